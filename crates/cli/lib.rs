@@ -1,0 +1,1 @@
+//! softdock: spacecraft docking and grasp scenarios.

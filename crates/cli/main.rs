@@ -1,0 +1,2 @@
+//! The `softdock` command.
+fn main() {}

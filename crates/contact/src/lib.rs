@@ -1,0 +1,1 @@
+//! Shapes, contact points with identity, and normal laws, on parry3d.

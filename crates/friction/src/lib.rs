@@ -1,0 +1,1 @@
+//! The extended bristle friction law, standalone.

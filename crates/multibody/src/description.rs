@@ -1,0 +1,166 @@
+//! A robot as its file describes it: plain, checked data, before it becomes a [`crate::Tree`].
+//!
+//! Frames are those of URDF: a joint's origin places the child link's frame in the parent link's frame; the joint
+//! moves about or along `axis`, in the joint (= child) frame. Units are SI.
+
+use spatial::{Mat3, Pose, Vec3};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A whole robot: one connected tree of links.
+#[derive(Clone, Debug)]
+pub struct RobotDescription {
+    /// The robot's name.
+    pub name: String,
+    /// The file it was read from, for messages.
+    pub file: PathBuf,
+    /// Links; the first is the root, parents stand before children.
+    pub links: Vec<LinkDescription>,
+    /// Joints; joint `i` carries link `i + 1`.
+    pub joints: Vec<JointDescription>,
+}
+
+/// One link.
+#[derive(Clone, Debug)]
+pub struct LinkDescription {
+    /// Unique name.
+    pub name: String,
+    /// Mass properties; `None` for a massless frame.
+    pub inertial: Option<Inertial>,
+    /// What is seen.
+    pub visuals: Vec<Visual>,
+    /// What touches.
+    pub collisions: Vec<Collision>,
+}
+
+/// Mass properties of a link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertial {
+    /// kg, positive.
+    pub mass: f64,
+    /// Centre of mass in the link frame, m.
+    pub com: Vec3,
+    /// Tensor about the centre of mass, in the *link's* axes (already turned from the inertial frame's), kg·m².
+    pub tensor_com: Mat3,
+}
+
+/// A visible shape of a link.
+#[derive(Clone, Debug)]
+pub struct Visual {
+    /// Its name, or a made-up one (`link_visual_0`).
+    pub name: String,
+    /// Shape frame in the link frame.
+    pub pose_ls: Pose,
+    /// The shape.
+    pub geometry: Geometry,
+    /// Colour, linear RGBA in 0–1, from the material.
+    pub rgba: Option<[f64; 4]>,
+}
+
+/// A touching shape of a link.
+#[derive(Clone, Debug)]
+pub struct Collision {
+    /// Its name, or the link's name where it is the only one (`link_1`, `link_2` otherwise).
+    pub name: String,
+    /// Shape frame in the link frame.
+    pub pose_ls: Pose,
+    /// The shape.
+    pub geometry: Geometry,
+}
+
+/// A shape, in its own frame.
+#[derive(Clone, Debug)]
+pub enum Geometry {
+    /// Full edge lengths, m.
+    Box {
+        /// Along x, y, z.
+        size: Vec3,
+    },
+    /// About the origin.
+    Sphere {
+        /// m.
+        radius: f64,
+    },
+    /// Along z, centred.
+    Cylinder {
+        /// m.
+        radius: f64,
+        /// Full length, m.
+        length: f64,
+    },
+    /// Along z, centred.
+    Capsule {
+        /// m.
+        radius: f64,
+        /// Length of the cylindrical part, m.
+        length: f64,
+    },
+    /// Triangles, scale applied.
+    Mesh(Arc<Mesh>),
+}
+
+/// A triangle mesh, in metres, in the shape's frame.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    /// The resolved file.
+    pub file: PathBuf,
+    /// Vertices, m, scale applied.
+    pub vertices: Vec<[f64; 3]>,
+    /// Counter-clockwise from outside; each index is inside `vertices`.
+    pub triangles: Vec<[u32; 3]>,
+    /// Colour per vertex, RGBA 0–1, where the file has materials (empty otherwise).
+    pub vertex_rgba: Vec<[f32; 4]>,
+}
+
+/// How a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Turns about the axis.
+    Revolute,
+    /// Slides along the axis.
+    Prismatic,
+    /// Does not move.
+    Fixed,
+    /// Six freedoms.
+    Floating,
+    /// Slides in the plane normal to the axis and turns about it.
+    Planar,
+}
+
+/// One joint.
+#[derive(Clone, Debug)]
+pub struct JointDescription {
+    /// Unique name.
+    pub name: String,
+    /// How it moves (URDF `continuous` is `Revolute` without position limits).
+    pub kind: JointKind,
+    /// Index of the parent link, smaller than the child's.
+    pub parent: usize,
+    /// Joint frame in the parent link frame.
+    pub pose_pj: Pose,
+    /// Unit vector in the joint frame.
+    pub axis: Vec3,
+    /// Limits; `None` where the joint has none.
+    pub position_limits: Option<[f64; 2]>,
+    /// Largest effort, N·m or N; infinite if not given.
+    pub effort_limit: f64,
+    /// Largest speed, rad/s or m/s; infinite if not given.
+    pub velocity_limit: f64,
+    /// Viscous friction, N·m·s/rad or N·s/m.
+    pub damping: f64,
+    /// Dry friction level, N·m or N.
+    pub friction: f64,
+    /// Follows another joint: position = multiplier × its position + offset.
+    pub mimic: Option<Mimic>,
+}
+
+/// A joint that follows another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mimic {
+    /// Index of the leading joint; it follows nobody itself.
+    pub joint: usize,
+    /// Ratio of the rates.
+    pub multiplier: f64,
+    /// Position at the leader's zero, rad or m.
+    pub offset: f64,
+}

@@ -1,0 +1,1 @@
+//! Channels, recordings and their sinks: Parquet, CSV, Rerun.

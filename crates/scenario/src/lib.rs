@@ -1,0 +1,1 @@
+//! The scenario file, strategies, success criteria and metrics.

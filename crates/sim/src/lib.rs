@@ -1,0 +1,1 @@
+//! The world: bodies, effects, actuators, integrators and the step.
