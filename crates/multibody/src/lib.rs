@@ -2,8 +2,19 @@
 //!
 //! **files → [`RobotDescription`] → tree → kinematics and dynamics.** This crate knows nothing of contact or time.
 
+mod aba;
 mod description;
+mod dynamics;
+mod kinematics;
+mod tree;
 
+pub use aba::Drive;
 pub use description::{
     Collision, Geometry, Inertial, JointDescription, JointKind, LinkDescription, Mesh, Mimic, RobotDescription, Visual,
 };
+pub use dynamics::{
+    Accelerations, Dynamics, add_gravity, calc_centroidal_momentum, calc_kinetic_energy, calc_locked_inertia,
+    calc_momentum, calc_potential_energy,
+};
+pub use kinematics::Kinematics;
+pub use tree::{Body, Joint, Link, Tree};

@@ -1,0 +1,192 @@
+//! Inverse and forward dynamics, mass matrix, momentum and energy.
+//!
+//! Generalised velocity (V_B, v): base twist (angular first, W axes, about the anchor), then the joint coordinates.
+//! Accelerations of the base are *spatial*: the rate of the twist about the anchor taken as fixed in W; the classical
+//! acceleration of the base origin is `lin` + ω × v.
+//!
+//!   M (A_B, v̇) + c = (F_B, τ)           F_B: wrench on the base about the anchor; zero when it floats free
+//!
+//! Algorithms: recursive Newton–Euler, composite rigid body and articulated body (Featherstone 2008, ch. 5, 6, 7, 9),
+//! all in one frame, so that composites are sums.
+
+use crate::{Kinematics, Tree};
+use spatial::{Inertia, SpatialMatrix, Twist, Vec3, Wrench};
+
+/// Scratch of the recursions; sized once from the tree.
+#[derive(Clone, Debug)]
+pub struct Dynamics {
+    /// Spatial accelerations of the bodies.
+    pub acc: Vec<Twist>,
+    /// Wrenches that the parents' joints transmit, about the anchor; the first is the base's total.
+    pub wrench: Vec<Wrench>,
+    pub(crate) composite: Vec<SpatialMatrix>,
+    pub(crate) force: Vec<Wrench>,
+    pub(crate) articulated: crate::aba::ArticulatedScratch,
+}
+
+impl Dynamics {
+    /// Room for one vehicle.
+    pub fn new(tree: &Tree) -> Self {
+        let n = tree.bodies.len();
+        Self {
+            acc: vec![Twist::default(); n],
+            wrench: vec![Wrench::default(); n],
+            composite: vec![SpatialMatrix::default(); n],
+            force: vec![Wrench::default(); 6],
+            articulated: crate::aba::ArticulatedScratch::new(tree),
+        }
+    }
+
+    /// Inverse dynamics: joint efforts `tau` and the base wrench (about the anchor, W axes) that produce the given
+    /// accelerations against the external wrenches `external` (per body, about the anchor, W axes).
+    pub fn calc_inverse(
+        &mut self,
+        tree: &Tree,
+        kin: &Kinematics,
+        motion: &Accelerations<'_>,
+        external: &[Wrench],
+        tau: &mut [f64],
+    ) -> Wrench {
+        self.acc[0] = motion.base;
+        for (j, joint) in tree.joints.iter().enumerate() {
+            let parent = tree.bodies[j + 1].parent;
+            let (mut rate, mut gain) = (Twist::default(), Twist::default());
+            for k in 0..joint.width {
+                let screw = kin.screws[joint.column + k];
+                rate += screw * motion.v[joint.v_index + k];
+                gain += screw * motion.v_dot[joint.v_index + k];
+            }
+            self.acc[j + 1] = self.acc[parent] + gain + kin.vel[parent].cross_motion(&rate);
+        }
+        for (body, wrench) in self.wrench.iter_mut().enumerate() {
+            let momentum = kin.inertia[body].momentum(&kin.vel[body]);
+            *wrench = kin.inertia[body].momentum(&self.acc[body]) + kin.vel[body].cross_force(&momentum) - external[body];
+        }
+        self.collect(tree, kin, tau)
+    }
+
+    fn collect(&mut self, tree: &Tree, kin: &Kinematics, tau: &mut [f64]) -> Wrench {
+        tau.fill(0.0);
+        for (j, joint) in tree.joints.iter().enumerate().rev() {
+            let wrench = self.wrench[j + 1];
+            for k in 0..joint.width {
+                tau[joint.v_index + k] += kin.screws[joint.column + k].dot(&wrench);
+            }
+            self.wrench[tree.bodies[j + 1].parent] += wrench;
+        }
+        self.wrench[0]
+    }
+
+    /// Mass matrix over (V_B, v), plus `extra` (per body, about the anchor; empty for none): row-major, the full square
+    /// of side `stride` ≥ 6 + nv written from `m[0]`.
+    pub fn calc_mass_matrix(
+        &mut self,
+        tree: &Tree,
+        kin: &Kinematics,
+        extra: &[SpatialMatrix],
+        m: &mut [f64],
+        stride: usize,
+    ) {
+        for (body, inertia) in kin.inertia.iter().enumerate() {
+            self.composite[body] = SpatialMatrix::from(inertia);
+            if let Some(e) = extra.get(body) {
+                self.composite[body] += *e;
+            }
+        }
+        let n = 6 + tree.nv;
+        for row in m.chunks_mut(stride).take(n) {
+            row[..n].fill(0.0);
+        }
+        for j in (0..tree.joints.len()).rev() {
+            self.add_joint_rows(tree, kin, j, m, stride);
+            let composite = self.composite[j + 1];
+            self.composite[tree.bodies[j + 1].parent] += composite;
+        }
+        write_base_block(&self.composite[0], m, stride);
+    }
+
+    fn add_joint_rows(&mut self, tree: &Tree, kin: &Kinematics, j: usize, m: &mut [f64], stride: usize) {
+        let joint = &tree.joints[j];
+        for k in 0..joint.width {
+            self.force[k] = self.composite[j + 1].mul(&kin.screws[joint.column + k]);
+        }
+        for k in 0..joint.width {
+            let (row, force) = (6 + joint.v_index + k, self.force[k]);
+            for l in 0..joint.width {
+                m[row * stride + 6 + joint.v_index + l] += kin.screws[joint.column + l].dot(&force);
+            }
+            let mut at = tree.bodies[j + 1].parent;
+            while at != 0 {
+                let above = &tree.joints[at - 1];
+                for l in 0..above.width {
+                    let (column, value) = (6 + above.v_index + l, kin.screws[above.column + l].dot(&force));
+                    // A mimic joint below its leader meets its own coordinate: both halves land on the diagonal.
+                    m[row * stride + column] += value;
+                    m[column * stride + row] += value;
+                }
+                at = tree.bodies[at].parent;
+            }
+            for l in 0..3 {
+                for (column, value) in [(l, force.moment[l]), (3 + l, force.force[l])] {
+                    m[row * stride + column] += value;
+                    m[column * stride + row] += value;
+                }
+            }
+        }
+    }
+}
+
+fn write_base_block(total: &SpatialMatrix, m: &mut [f64], stride: usize) {
+    for i in 0..3 {
+        for j in 0..3 {
+            m[i * stride + j] = total.ma[(i, j)];
+            m[i * stride + 3 + j] = total.ml[(i, j)];
+            m[(3 + i) * stride + j] = total.fa[(i, j)];
+            m[(3 + i) * stride + 3 + j] = total.fl[(i, j)];
+        }
+    }
+}
+
+/// Velocities and accelerations for the inverse dynamics.
+#[derive(Clone, Copy, Debug)]
+pub struct Accelerations<'a> {
+    /// Spatial acceleration of the base about the anchor.
+    pub base: Twist,
+    /// Joint rates.
+    pub v: &'a [f64],
+    /// Joint accelerations.
+    pub v_dot: &'a [f64],
+}
+
+/// Momentum about the anchor, W axes: angular in the moment slot, linear in the force slot.
+pub fn calc_momentum(kin: &Kinematics) -> Wrench {
+    kin.inertia.iter().zip(&kin.vel).fold(Wrench::default(), |sum, (i, v)| sum + i.momentum(v))
+}
+
+/// Inertia of the whole vehicle with its joints locked, about the anchor, W axes.
+pub fn calc_locked_inertia(kin: &Kinematics) -> Inertia {
+    kin.inertia.iter().fold(Inertia::default(), |sum, i| sum + *i)
+}
+
+/// Centroidal momentum: centre of mass in W (m), angular momentum about it and linear momentum, W axes.
+pub fn calc_centroidal_momentum(kin: &Kinematics) -> (Vec3, Wrench) {
+    let com = calc_locked_inertia(kin).com();
+    (kin.anchor + com, calc_momentum(kin).about(&com))
+}
+
+/// Kinetic energy, J.
+pub fn calc_kinetic_energy(kin: &Kinematics) -> f64 {
+    kin.inertia.iter().zip(&kin.vel).map(|(i, v)| i.kinetic_energy(v)).sum()
+}
+
+/// Potential energy in a uniform gravity field (W axes, m/s²), zero at the world's origin, J.
+pub fn calc_potential_energy(kin: &Kinematics, gravity: &Vec3) -> f64 {
+    -kin.inertia.iter().map(|i| gravity.dot(&(i.mc + i.mass * kin.anchor))).sum::<f64>()
+}
+
+/// Adds the weight of every body to `external`, about the anchor.
+pub fn add_gravity(kin: &Kinematics, gravity: &Vec3, external: &mut [Wrench]) {
+    for (inertia, wrench) in kin.inertia.iter().zip(external) {
+        *wrench += Wrench::new(inertia.mc.cross(gravity), inertia.mass * gravity);
+    }
+}
