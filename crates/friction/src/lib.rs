@@ -1,1 +1,36 @@
-//! The extended bristle friction law, standalone.
+//! The 3-D extended bristle friction law, standalone.
+//!
+//! A contact point's friction is a brush that touches the common tangent plane; its state is one effective bristle, a
+//! spring that stretches and turns within that plane (Liang, Fillmore and Ma 2012, section 2, after Haessig and
+//! Friedland 1991). One law gives the force in sticking and in sliding:
+//!
+//!   s⁺ = s + displacement of B's material point relative to A's, in the plane      trial deflection, m
+//!   s' = s⁺            where |s⁺| ≤ s_max = μ fₙ / k                                sticks
+//!   s' = s_max s⁺/|s⁺| elsewhere                                                   slides: dragged along
+//!   f  = −(k s' + c (s' − s)/τ), shortened to μ fₙ, − b u                           on B, N
+//!
+//! with τ the time between s and s', and a level μ that may fall with the slip speed u (Stribeck):
+//!   μ(u) = μ_k + (μ_s − μ_k) exp(−(u/v_s)²).
+//!
+//! Sign: `f` acts on B, `s` and `u` are B's motion relative to A. All vectors lie in the tangent plane, in any axes.
+//! The law is pure: it returns a force *and* what becomes of the bristle; only an accepted step commits it.
+//!
+//! # Embedding it: a block that is pulled over a plane
+//!
+//! ```
+//! use friction::{Bristle, Trial};
+//! use nalgebra::Vector3;
+//! let law = Bristle { mu_static: 0.4, mu_kinetic: 0.4, stiffness: 1e5, ..Bristle::default() };
+//! let (mass, h, pull, mut x, mut v, mut s) = (1.0, 1e-4, 3.0, 0.0, 0.0, Vector3::zeros());
+//! for _ in 0..10_000 {
+//!     let slip = Vector3::new(v, 0.0, 0.0);
+//!     let brush = law.eval(&Trial { s, s_trial: s + h * slip, slip, elapsed: h, normal_force: 9.81 * mass });
+//!     v += h * (pull + brush.force.x) / mass;
+//!     (x, s) = (x + h * v, brush.s);
+//! }
+//! assert!(x < 2.0 * pull / law.stiffness); // 3 N is below 0.4 · 9.81 N: it springs, it does not slide
+//! ```
+
+mod bristle;
+
+pub use bristle::{Bristle, Brush, FrictionError, Trial};
