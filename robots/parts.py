@@ -51,7 +51,7 @@ def camera(xyz, axis, radius=0.05, length=0.11):
 def solar_wing(name, panels, span, chord, yoke, mass, strings=(6, 8)):
     """A wing along +y from its root, cells towards +z: `panels` of span × chord behind a triangular yoke. Returns a Link."""
     thick, gap = 0.022, 0.025
-    frame, cells, solids = joined(), joined(), []
+    frame, cells, back, solids = joined(), joined(), joined(), []
     frame += drum(0.055, (0, 0, 0), (0, 0.10, 0), 0.012)
     for side in (-1, 1):
         frame += cylinder(0.016, (0, 0.08, 0), (side * 0.36 * chord, yoke, 0), 12)
@@ -62,13 +62,25 @@ def solar_wing(name, panels, span, chord, yoke, mass, strings=(6, 8)):
         frame += panel_rims(chord, span, thick, middle)
         frame += hinges(chord, middle[1] - 0.5 * span - 0.5 * gap)
         cells += cell_field(chord, span, strings, (0, middle[1], 0.5 * thick + 0.003))
+        back += panel_back(chord, span, (0, middle[1], -0.5 * thick))
         solids.append(inertia.box(0.88 * mass / panels, (chord, span, thick), middle))
     solids.append(inertia.tube(0.12 * mass, 0.03, (0, 0, 0), (0, yoke, 0)))
     length = panels * span + (panels - 1) * gap
     tag = box_tag((chord, length, 0.03))
-    link = Link(name, solids, [("wing_frame", frame, "substrate"), ("wing_cells", cells, "cell_blue")])
+    link = Link(name, solids, [("wing_frame", frame, "substrate"), ("wing_cells", cells, "cell_blue"),
+                                ("wing_back", back, "graphite")])
     link.collisions.append((f"{name}_panels", tag, (0, yoke + 0.5 * length, 0), (0, 0, 0)))
     return link
+
+
+def panel_back(chord, span, middle):
+    """The back of a panel: carbon-fibre fields between ribs."""
+    out = joined()
+    for i in range(3):
+        for j in range(3):
+            x, y = (i - 1) * (chord - 0.05) / 3, (j - 1) * (span - 0.05) / 3
+            out += box(((chord - 0.11) / 3, (span - 0.11) / 3, 0.006), (middle[0] + x, middle[1] + y, middle[2] - 0.001))
+    return out
 
 
 def panel_rims(chord, span, thick, middle):
@@ -116,7 +128,7 @@ def tile(width, depth, middle):
 def adapter_ring(radius, height, xyz, axis):
     """A launch-adapter ring: a web between two flanges, standing on the face at `xyz`."""
     web = ring(radius - 0.012, radius, (0, 0, 0), (0, 0, height), 56)
-    low = ring(radius - 0.012, radius + 0.03, (0, 0, 0), (0, 0, 0.010), 56)
+    low = ring(radius - 0.03, radius + 0.03, (0, 0, 0), (0, 0, 0.024), 56)
     top = ring(radius - 0.035, radius + 0.012, (0, 0, height - 0.018), (0, 0, height), 56)
     return joined(web, low, top).at(xyz, axis)
 

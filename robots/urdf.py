@@ -44,7 +44,7 @@ def numbers(values, digits=6):
 
 
 def origin(xyz, rpy=(0, 0, 0)):
-    turn = f' rpy="{numbers(rpy, 12)}"' if any(rpy) else ""
+    turn = ' rpy="' + " ".join(repr(float(a)) if a else "0" for a in rpy) + '"' if any(rpy) else ""
     return f'<origin xyz="{numbers(xyz)}"{turn}/>'
 
 

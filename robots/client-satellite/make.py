@@ -55,7 +55,7 @@ def bus_visuals():
     corners = [((0.53 * x, 0.53 * y, 0.73 * z), (x, y, z)) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
     blocks, nozzles = parts.thruster_pods([(tuple(1.06 * c for c in p), s) for p, s in corners], (2,))
     return [
-        ("bus_foil", foil(BUS, 0.009, 15, seed=23), "foil_silver"),
+        ("bus_foil", foil(BUS, 0.015, 16, seed=23), "foil_silver"),
         ("bus_frame", parts.edge_frame(BUS, 0.03), "aluminium"),
         ("bus_ring", parts.adapter_ring(RING[0], RING[1], (0, 0, -0.75), (0, 0, -1)), "steel"),
         ("bus_fittings", joined(fittings(), blocks), "aluminium"),
@@ -84,7 +84,7 @@ def white_parts():
     out = joined()
     for side in (-1, 1):
         for z in (-0.42, 0.42):
-            out += rounded_box((0.86, 0.02, 0.52), 0.008, (0, side * 0.565, z), steps=1)
+            out += rounded_box((0.86, 0.03, 0.52), 0.008, (0, side * 0.568, z), steps=1)
     out += dish(0.43, 0.13, 0.012, (0.64, 0, 0.30), (1, 0, 0))
     out += cylinder(0.05, (0.98, 0, 0.30), (1.05, 0, 0.30), 18, top=0.03)
     out += dish(0.17, 0.05, 0.008, (0.15, -0.15, 0.99), (0, 0, 1))
@@ -98,9 +98,9 @@ def amber_parts():
 
 def graphite_parts():
     """Sun sensors, a star tracker, the dark field of the docking mark."""
-    out = rounded_box((0.015, 0.46, 0.34), 0.006, (-0.556, 0, 0), steps=1)
+    out = rounded_box((0.036, 0.46, 0.34), 0.006, (-0.554, 0, 0), steps=1)
     for y in (0.14, 0.33):
-        out += cylinder(0.04, (-0.20, y, 0.88), (-0.28, y, 1.02), 20, top=0.075)
+        out += parts.camera((-0.20, y, 0.88), (-0.08, 0, 0.14), 0.055, 0.17)[0]
     out += rounded_box((0.07, 0.07, 0.03), 0.01, (-0.40, -0.40, 0.76), steps=1)
     return out
 
@@ -114,7 +114,7 @@ def grapple_bar():
         start, end = (0.5 * BAR[0], side * POST_Y, 0), (BAR_OFF_FACE, side * POST_Y, 0)
         posts += cylinder(POST, start, end, 20)
         posts += cylinder(0.022, start, (0.5 * BAR[0] + 0.02, side * POST_Y, 0), 20, top=POST)
-        feet += drum(0.036, (BAR_OFF_FACE - 0.03, side * POST_Y, 0), (BAR_OFF_FACE, side * POST_Y, 0), 0.008, 24)
+        feet += drum(0.036, (BAR_OFF_FACE - 0.04, side * POST_Y, 0), (BAR_OFF_FACE, side * POST_Y, 0), 0.008, 24)
         solids.append(inertia.tube(0.95, POST, start, end))
         middle = (0.5 * (start[0] + end[0]), side * POST_Y, 0)
         collisions.append((f"standoff_{word}", urdf.cylinder_tag(POST, reach), middle, (0, pi / 2, 0)))
@@ -125,7 +125,7 @@ def grapple_bar():
 
 def mark():
     """What the gripper's camera looks for on the dark plate: a ring, a cross, corner squares."""
-    x = BAR_OFF_FACE - 0.016
+    x = BAR_OFF_FACE - 0.026
     out = ring(0.052, 0.064, (x, 0, 0), (x + 0.004, 0, 0), 40)
     out += box((0.004, 0.084, 0.008), (x + 0.002, 0, 0))
     out += box((0.004, 0.008, 0.084), (x + 0.002, 0, 0))

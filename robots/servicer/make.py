@@ -27,6 +27,7 @@ WING = dict(panels=2, span=1.25, chord=1.25, yoke=0.45, mass=20.0)
 WING_TILT = -0.35                  # rad about y: cells towards the deck and a little aft
 NATURAL_DEG = {"shoulder_yaw": 0, "shoulder_pitch": 70, "upper_roll": 0, "elbow_pitch": 88, "forearm_roll": 0,
                "wrist_pitch": -68, "wrist_roll": 0}
+TRACKERS = (0.28, 0.48)            # y of the two star trackers on the deck
 CORNERS = [((0.66 * x, 0.66 * y, 0.56 * z), (x, y, z)) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
 
 
@@ -56,8 +57,9 @@ def bus_visuals():
     blocks, nozzles = parts.thruster_pods([(tuple(1.07 * c for c in p), s) for p, s in CORNERS], (0, 1, 2))
     barrels, glass = optics()
     return [
-        ("bus_foil", foil(BUS, 0.009, 15, seed=7), "foil_gold"),
+        ("bus_foil", foil(BUS, 0.017, 16, seed=7), "foil_gold"),
         ("bus_frame", joined(parts.edge_frame(BUS, 0.035), bus_fittings()), "aluminium"),
+        ("bus_adapter", joined(parts.adapter_ring(0.45, 0.07, (-0.70, 0, 0), (-1, 0, 0)), drum(0.13, (-0.69, 0, 0), (-0.76, 0, 0))), "steel"),
         ("bus_pods", blocks, "aluminium"),
         ("bus_white", bus_white(), "white"),
         ("bus_graphite", joined(front_plate(), barrels), "graphite"),
@@ -69,10 +71,8 @@ def bus_visuals():
 
 
 def bus_fittings():
-    """Adapter ring and engine collar aft, pedestal, wing drives, mast of the dish."""
-    out = joined(parts.adapter_ring(0.45, 0.07, (-0.70, 0, 0), (-1, 0, 0)))
-    out += drum(0.13, (-0.69, 0, 0), (-0.76, 0, 0), 0.02)
-    out += cylinder(0.20, (MOUNT[0], 0, 0.60), (MOUNT[0], 0, 0.62), 36)
+    """Pedestal, wing drives, mast of the dish."""
+    out = cylinder(0.20, (MOUNT[0], 0, 0.60), (MOUNT[0], 0, 0.62), 36)
     out += cylinder(0.185, (MOUNT[0], 0, 0.62), (MOUNT[0], 0, 0.695), 36, top=0.145)
     for side in (-1, 1):
         out += drum(0.12, (0, side * 0.70, 0), (0, side * 0.745, 0), 0.015)
@@ -88,16 +88,21 @@ def bus_white():
     out = joined()
     for side in (-1, 1):
         for z in (-0.34, 0.34):
-            out += rounded_box((1.10, 0.02, 0.34), 0.008, (0, side * 0.717, z), steps=1)
-        out += rounded_box((0.34, 0.02, 0.30), 0.008, (-0.38, side * 0.717, 0), steps=1)
-        out += rounded_box((0.34, 0.02, 0.30), 0.008, (0.38, side * 0.717, 0), steps=1)
+            out += rounded_box((1.10, 0.03, 0.34), 0.008, (0, side * 0.718, z), steps=1)
+        out += rounded_box((0.34, 0.03, 0.30), 0.008, (-0.38, side * 0.718, 0), steps=1)
+        out += rounded_box((0.34, 0.03, 0.30), 0.008, (0.38, side * 0.718, 0), steps=1)
     out += dish(0.36, 0.11, 0.012, (-0.42, -0.30, 0.94), (0, 0, 1))
     out += cylinder(0.045, (-0.42, -0.30, 1.20), (-0.42, -0.30, 1.26), 16, top=0.03)
-    for y in (0.28, 0.48):
+    for y in TRACKERS:
         out += rounded_box((0.14, 0.13, 0.10), 0.02, (-0.45, y, 0.65))
-        out += cylinder(0.045, (-0.47, y, 0.68), (-0.60, y, 0.86), 20, top=0.085)
+        out += trackers(y)[0]
     out += rounded_box((0.16, 0.16, 0.03), 0.01, (-0.05, 0.45, 0.615))
     return out
+
+
+def trackers(y):
+    """A star tracker's baffle and its glass."""
+    return parts.camera((-0.46, y, 0.68), (-0.13, 0, 0.18), 0.058, 0.20)
 
 
 def front_plate():
@@ -106,14 +111,14 @@ def front_plate():
 
 
 def optics():
-    """Two docking cameras, a scanning lidar, a camera that looks down the arm. Returns barrels, glass."""
+    """Two docking cameras, a lidar between them, the glass of the star trackers. Returns barrels, glass."""
     barrels, glass = joined(), joined()
-    views = [((0.725, 0.24, 0.28), (1, 0, 0), 0.055), ((0.725, -0.24, 0.28), (1, 0, 0), 0.055),
-             ((0.725, 0.0, 0.10), (1, 0, 0), 0.085), ((-0.50, 0.28, 0.76), (-0.42, 0, 0.58), 0.0)]
-    for xyz, axis, radius in views[:3]:
-        barrel, lens = parts.camera(xyz, axis, radius, 2.0 * radius)
+    for xyz, radius in (((0.725, 0.24, 0.28), 0.055), ((0.725, -0.24, 0.28), 0.055), ((0.725, 0.0, 0.10), 0.085)):
+        barrel, lens = parts.camera(xyz, (1, 0, 0), radius, 2.0 * radius)
         barrels += barrel
         glass += lens
+    for y in TRACKERS:
+        glass += trackers(y)[1]
     return barrels, glass
 
 
