@@ -7,7 +7,7 @@ from shapes import Mesh, box, cylinder, drum, joined, nozzle, revolved, ring, ro
 from urdf import Link, box_tag
 
 COLOURS = {
-    "foil_gold": (0.86, 0.62, 0.16, 1), "foil_silver": (0.74, 0.76, 0.79, 1), "foil_amber": (0.62, 0.36, 0.12, 1),
+    "foil_gold": (0.86, 0.62, 0.16, 1), "foil_silver": (0.74, 0.76, 0.79, 1),
     "aluminium": (0.66, 0.68, 0.71, 1), "white": (0.92, 0.92, 0.90, 1), "graphite": (0.15, 0.16, 0.18, 1),
     "housing": (0.30, 0.32, 0.36, 1), "cell_blue": (0.04, 0.10, 0.36, 1), "substrate": (0.50, 0.52, 0.56, 1),
     "nozzle": (0.34, 0.30, 0.28, 1), "lens": (0.05, 0.09, 0.16, 1), "lamp": (1.0, 0.97, 0.85, 1),

@@ -70,15 +70,6 @@ class Mesh:
         out.triangles = list(self.triangles)
         return out
 
-    def turned(self, columns, xyz=(0, 0, 0)):
-        """A copy in the axes given as columns."""
-        turn = lambda v: add(add(scale(columns[0], v[0]), scale(columns[1], v[1])), scale(columns[2], v[2]))
-        out = Mesh()
-        out.points = [add(turn(p), xyz) for p in self.points]
-        out.normals = [turn(n) for n in self.normals]
-        out.triangles = list(self.triangles)
-        return out
-
     def triangle(self, a, b, c):
         """Adds a triangle unless it has no area (the poles of a revolved shape)."""
         p, q, r = self.points[a], self.points[b], self.points[c]
@@ -212,11 +203,6 @@ def ring(inner, outer, start, end, segments=48):
     corners = [(inner, 0.0), (outer, 0.0), (outer, height), (inner, height), (inner, 0.0)]
     strips = [[a, b] for a, b in zip(corners, corners[1:])]
     return revolved(strips, segments).at(start, sub(end, start))
-
-
-def torus(radius, tube, xyz=(0, 0, 0), axis=(0, 0, 1), segments=48, around=10):
-    turns = [pi + 2.0 * pi * n / around for n in range(around + 1)]
-    return revolved([[(radius + tube * cos(t), tube * sin(t)) for t in turns]], segments).at(xyz, axis)
 
 
 def nozzle(throat, exit, length, xyz, axis, segments=20):

@@ -106,7 +106,7 @@ def graphite_parts():
 
 
 def grapple_bar():
-    """Frame at the centre of the bar, axes of the bus. Two standoffs carry it; behind it is nothing for 0.19 m."""
+    """Frame at the centre of the bar, axes of the bus. Two standoffs carry it; behind it is nothing for 0.18 m."""
     reach = BAR_OFF_FACE - 0.5 * BAR[0]
     posts, feet, solids = joined(), joined(), [inertia.box(2.1, BAR, (0, 0, 0))]
     collisions = [("grapple_bar", urdf.box_tag(BAR), (0, 0, 0), (0, 0, 0))]

@@ -92,7 +92,8 @@ def upper_arm():
     trim = joined(bands(0.0705, (0, 0, 0.20), (0, 0, 0.225)), bands(0.0705, (0, 0, 0.68), (0, 0, 0.705)),
                   conduit(0.077, 0.13, 0.78), end_cap(0.06, elbow[1], (0, 1, 0)))
     marks = joined(bands(0.0695, (0, 0, 0.44), (0, 0, 0.48)))
-    return Link("upper_arm", [inertia.tube(4.5, 0.098, (0, 0, 0), (0, 0, 0.11)), inertia.tube(5.5, 0.068, (0, 0, 0.11), (0, 0, 0.84), 0.01),
+    return Link("upper_arm", [inertia.tube(4.5, 0.098, (0, 0, 0), (0, 0, 0.11)),
+                              inertia.tube(5.5, 0.068, (0, 0, 0.11), (0, 0, 0.84), 0.01),
                               inertia.tube(6.0, 0.10, *elbow)],
                 [("upper_arm_white", white, "white"), ("upper_arm_dark", dark, "housing"), ("upper_arm_trim", trim, "aluminium"),
                  ("upper_arm_marks", marks, "orange")],
@@ -144,7 +145,8 @@ def flange():
     dark = joined(drum(0.072, (0, 0, 0), (0, 0, FLANGE - 0.01), 0.015))
     trim = joined(ring(0.03, 0.066, (0, 0, FLANGE - 0.012), (0, 0, FLANGE + 0.004), 36),
                   ring(0.03, 0.060, (0, 0, FLANGE + 0.004), (0, 0, FLANGE + SENSOR), 36))
-    return Link("flange", [inertia.tube(2.6, 0.072, (0, 0, 0), (0, 0, FLANGE)), inertia.tube(0.6, 0.06, (0, 0, FLANGE), (0, 0, FLANGE + SENSOR))],
+    return Link("flange", [inertia.tube(2.6, 0.072, (0, 0, 0), (0, 0, FLANGE)),
+                           inertia.tube(0.6, 0.06, (0, 0, FLANGE), (0, 0, FLANGE + SENSOR))],
                 [("flange_dark", dark, "housing"), ("flange_sensor", trim, "aluminium")],
                 [("flange", cylinder_tag(0.072, FLANGE + SENSOR), (0, 0, 0.5 * (FLANGE + SENSOR)), (0, 0, 0))])
 
