@@ -20,6 +20,17 @@ pub struct RobotDescription {
     pub joints: Vec<JointDescription>,
 }
 
+impl RobotDescription {
+    /// Whether the root, or anything fixed to it, has mass: a free base needs it, a fixed one does not.
+    pub fn root_has_mass(&self) -> bool {
+        let mut is_root_body = vec![true; self.links.len()];
+        for (i, joint) in self.joints.iter().enumerate() {
+            is_root_body[i + 1] = joint.kind == JointKind::Fixed && is_root_body[joint.parent];
+        }
+        self.links.iter().zip(is_root_body).any(|(link, is_root)| is_root && link.inertial.is_some())
+    }
+}
+
 /// One link.
 #[derive(Clone, Debug)]
 pub struct LinkDescription {
@@ -140,7 +151,7 @@ pub struct JointDescription {
     pub pose_pj: Pose,
     /// Unit vector in the joint frame.
     pub axis: Vec3,
-    /// Limits; `None` where the joint has none.
+    /// Limits, lower ≤ upper; `None` where the joint has none. One of them may be infinite, never both.
     pub position_limits: Option<[f64; 2]>,
     /// Largest effort, N·m or N; infinite if not given.
     pub effort_limit: f64,

@@ -6,7 +6,9 @@ mod aba;
 mod description;
 mod dynamics;
 mod kinematics;
+mod mesh;
 mod tree;
+mod urdf;
 
 pub use aba::Drive;
 pub use description::{
@@ -17,4 +19,6 @@ pub use dynamics::{
     calc_momentum, calc_potential_energy,
 };
 pub use kinematics::Kinematics;
+pub use mesh::{MeshError, SearchPaths, TextPlace, load_mesh};
 pub use tree::{Body, Joint, Link, Tree};
+pub use urdf::{UrdfError, UrdfErrors, UrdfProblem, load_urdf, parse_urdf};
