@@ -152,6 +152,44 @@ impl Bristle {
     }
 }
 
+/// What the law says in continuous time, for integrators that take rates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BrushRate {
+    /// Force on B, N.
+    pub force: Vector3<f64>,
+    /// The deflection within what the normal force holds, m.
+    pub s: Vector3<f64>,
+    /// Its rate, m/s: the slip velocity, without the part that would lengthen a bristle on its bound.
+    pub s_rate: Vector3<f64>,
+    /// Whether it sticks.
+    pub sticks: bool,
+}
+
+/// How near the bound counts as on it: with a strict comparison round-off would choose the branch.
+const ON_BOUND: f64 = 1.0 - 1e-9;
+
+impl Bristle {
+    /// The law in continuous time at the deflection `s` (m), slip velocity (m/s) and normal force (N).
+    pub fn eval_rate(&self, s: &Vector3<f64>, slip: &Vector3<f64>, normal_force: f64) -> BrushRate {
+        if normal_force <= 0.0 {
+            let zero = Vector3::zeros();
+            return BrushRate { force: zero, s: zero, s_rate: zero, sticks: false };
+        }
+        let bound = self.calc_level(slip.norm()) * normal_force;
+        let (s_max, length) = (bound / self.stiffness, s.norm());
+        let s = if length > s_max { s * (s_max / length) } else { *s };
+        let outward = s.dot(slip);
+        let slides = length >= s_max * ON_BOUND && outward > 0.0;
+        let s_rate = if slides { slip - s * (outward / s.norm_squared()) } else { *slip };
+        let mut force = -(self.stiffness * s + self.damping * s_rate);
+        let size = force.norm();
+        if size > bound {
+            force *= bound / size;
+        }
+        BrushRate { force: force - self.viscous * slip, s, s_rate, sticks: !slides }
+    }
+}
+
 impl Brush {
     /// −∂f/∂s⁺ as a matrix, N/m, in the plane normal to `n`.
     #[inline]

@@ -47,6 +47,18 @@ impl Dynamics {
         external: &[Wrench],
         tau: &mut [f64],
     ) -> Wrench {
+        self.calc_body_wrenches(tree, kin, motion, external);
+        self.collect(tree, kin, tau)
+    }
+
+    /// First half of the inverse dynamics: per body, the wrench that its motion takes beyond the external ones.
+    pub fn calc_body_wrenches(
+        &mut self,
+        tree: &Tree,
+        kin: &Kinematics,
+        motion: &Accelerations<'_>,
+        external: &[Wrench],
+    ) {
         self.acc[0] = motion.base;
         for (j, joint) in tree.joints.iter().enumerate() {
             let parent = tree.bodies[j + 1].parent;
@@ -60,12 +72,13 @@ impl Dynamics {
         }
         for (body, wrench) in self.wrench.iter_mut().enumerate() {
             let momentum = kin.inertia[body].momentum(&kin.vel[body]);
-            *wrench = kin.inertia[body].momentum(&self.acc[body]) + kin.vel[body].cross_force(&momentum) - external[body];
+            *wrench =
+                kin.inertia[body].momentum(&self.acc[body]) + kin.vel[body].cross_force(&momentum) - external[body];
         }
-        self.collect(tree, kin, tau)
     }
 
-    fn collect(&mut self, tree: &Tree, kin: &Kinematics, tau: &mut [f64]) -> Wrench {
+    /// Second half: sums `wrench` from the tips to the base; joint efforts into `tau`, the base's wrench returned.
+    pub fn collect(&mut self, tree: &Tree, kin: &Kinematics, tau: &mut [f64]) -> Wrench {
         tau.fill(0.0);
         for (j, joint) in tree.joints.iter().enumerate().rev() {
             let wrench = self.wrench[j + 1];

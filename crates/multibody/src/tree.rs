@@ -16,7 +16,7 @@
 
 use crate::{JointDescription, JointKind, RobotDescription};
 use nalgebra::{Quaternion, UnitQuaternion};
-use spatial::{Frame, Inertia, Twist, Vec3, exp_rotation, nalgebra, rotation_about};
+use spatial::{Frame, Inertia, Twist, Vec3, exp_rotation, log_rotation, nalgebra, rotation_about};
 
 /// A robot, ready to move; never changes after it is built.
 #[derive(Clone, Debug)]
@@ -131,7 +131,8 @@ impl Tree {
                     (tree.add_joint(joint), Frame::identity())
                 }
             };
-            let inertia = link.inertial.map_or(Inertia::default(), |m| Inertia::from_com(m.mass, &m.com, &m.tensor_com));
+            let inertia =
+                link.inertial.map_or(Inertia::default(), |m| Inertia::from_com(m.mass, &m.com, &m.tensor_com));
             tree.bodies[body].inertia += inertia.transformed(&frame_bl.rot, &frame_bl.pos);
             tree.links.push(Link { name: link.name.clone(), body, frame_bl, inertia });
         }
@@ -265,6 +266,20 @@ impl Tree {
         }
     }
 
+    /// Displacement from `q0` to `q1`: the inverse of [`Tree::retract`].
+    pub fn calc_difference(&self, q0: &[f64], q1: &[f64], xi: &mut [f64]) {
+        for joint in self.joints.iter().filter(|j| !j.is_mimic) {
+            let (q0, q1, xi) = (&q0[joint.q_index..], &q1[joint.q_index..], &mut xi[joint.v_index..]);
+            for k in 0..joint.width.min(3) {
+                xi[k] = q1[k] - q0[k];
+            }
+            if joint.kind == JointKind::Floating {
+                let turned = log_rotation(&(rotation_of_floating(q0).inverse() * rotation_of_floating(q1)));
+                xi[3..6].copy_from_slice(turned.as_slice());
+            }
+        }
+    }
+
     /// Displacement of a step at constant `v` over `h`, to second order; what [`Tree::retract`] takes.
     pub fn calc_displacement(&self, q: &[f64], v: &[f64], h: f64, xi: &mut [f64]) {
         for joint in self.joints.iter().filter(|j| !j.is_mimic) {
@@ -329,10 +344,9 @@ impl Joint {
                 Frame { rot: spatial::Mat3::identity(), pos: (self.multiplier * q[0] + self.offset) * self.axis }
             }
             JointKind::Fixed => Frame::identity(),
-            JointKind::Floating => Frame {
-                rot: *rotation_of_floating(q).to_rotation_matrix().matrix(),
-                pos: Vec3::new(q[0], q[1], q[2]),
-            },
+            JointKind::Floating => {
+                Frame { rot: *rotation_of_floating(q).to_rotation_matrix().matrix(), pos: Vec3::new(q[0], q[1], q[2]) }
+            }
             JointKind::Planar => {
                 let [ex, ey] = plane_axes(&self.axis);
                 Frame { rot: rotation_about(&self.axis, q[2]), pos: q[0] * ex + q[1] * ey }

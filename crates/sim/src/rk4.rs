@@ -1,0 +1,222 @@
+//! The classical fourth-order Runge–Kutta step.
+//!
+//!   y = (base position, rotation vector from the step's start, joint displacement, v, p, L, s)
+//!
+//! Every stage takes the base twist from its momentum, so every stage conserves, and so does the sum. Rotation vectors
+//! follow θ̇ = ω − ½ θ×ω + 1/12 θ×(θ×ω). Bristles are integrated in B's axes; points that touch down within a step get
+//! theirs at its end. Sliding bristles turn at |u|/s_max, which wants h < 2 s_max/|u|.
+
+use crate::actuator::CoordinatePoint;
+use crate::contacts::{find_touches, find_memory};
+use crate::model::Model;
+use crate::solve;
+use crate::state::{Account, ContactMemory, State};
+use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
+use crate::workspace::Workspace;
+use spatial::{Mat3, Twist, Vec3, Wrench, log_rotation, rotation_rate_of_vector};
+
+/// Scratch of the stages.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stages {
+    start: State,
+    rate: Rates,
+    sum: Rates,
+    slots: Vec<ContactMemory>,
+}
+
+/// A rate of everything that is integrated.
+#[derive(Clone, Debug, Default)]
+struct Rates {
+    /// Per vehicle: rotation vector and position of the base.
+    base: Vec<Twist>,
+    xi: Vec<f64>,
+    v: Vec<f64>,
+    momentum: Vec<Wrench>,
+    /// Per bristle slot, in B's axes.
+    s: Vec<Vec3>,
+    account: Account,
+}
+
+impl Rates {
+    fn reset(&mut self, model: &Model, slots: usize) {
+        fn zero<T: Clone + Default>(x: &mut Vec<T>, n: usize) {
+            x.clear();
+            x.resize(n, T::default());
+        }
+        zero(&mut self.base, model.vehicles.len());
+        zero(&mut self.momentum, model.vehicles.len());
+        zero(&mut self.xi, model.nv());
+        zero(&mut self.v, model.nv());
+        zero(&mut self.s, slots);
+        self.account = Account::default();
+    }
+
+    fn add_scaled(&mut self, other: &Self, k: f64) {
+        fn add<T: Copy + std::ops::AddAssign + std::ops::Mul<f64, Output = T>>(x: &mut [T], y: &[T], k: f64) {
+            x.iter_mut().zip(y).for_each(|(x, y)| *x += *y * k);
+        }
+        add(&mut self.base, &other.base, k);
+        add(&mut self.momentum, &other.momentum, k);
+        add(&mut self.xi, &other.xi, k);
+        add(&mut self.v, &other.v, k);
+        add(&mut self.s, &other.s, k);
+        self.account.add_scaled(&other.account, k);
+    }
+}
+
+impl Stages {
+    pub fn new(model: &Model) -> Self {
+        let mut stages = Self { start: State::new(model), ..Self::default() };
+        stages.rate.reset(model, 0);
+        stages.sum.reset(model, 0);
+        stages
+    }
+}
+
+/// Times of the stages in steps, and their weights.
+const STAGES: [(f64, f64); 4] = [(0.0, 1.0 / 6.0), (0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
+
+/// Advances the world by one step; `ws` holds the kinematics of `state`.
+pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
+    let h = model.step;
+    begin(model, state, ws);
+    let mut rk = std::mem::take(&mut ws.rk);
+    rk.start.copy_from(state);
+    for (index, (node, weight)) in STAGES.into_iter().enumerate() {
+        if index > 0 {
+            let from = From { start: &rk.start, rate: &rk.rate, slots: &rk.slots };
+            place(model, state, &mut ws.displacement, &from, node * h);
+            ws.update_positions(model, state);
+            ws.update_velocities(model, state);
+        }
+        find_touches(model, state, ws, h);
+        if index == 0 {
+            open_slots(model, ws, &mut rk.slots);
+            rk.sum.reset(model, rk.slots.len());
+        }
+        calc_rates(model, state, ws, &mut rk);
+        rk.sum.add_scaled(&rk.rate, weight);
+    }
+    let from = From { start: &rk.start, rate: &rk.sum, slots: &rk.slots };
+    place(model, state, &mut ws.displacement, &from, h);
+    state.account.add_scaled(&rk.sum.account, h);
+    ws.rk = rk;
+    finish(model, state, ws);
+}
+
+/// Every touching point gets a slot, in the order of touches; its deflection is cut to what the normal force holds.
+fn open_slots(model: &Model, ws: &Workspace, slots: &mut Vec<ContactMemory>) {
+    slots.clear();
+    for touch in &ws.touches {
+        let law = &model.laws[touch.pair as usize];
+        let Some(friction) = &law.friction else { continue };
+        let n = touch.normal;
+        let normal = law.normal.eval(touch.gap, n.dot(&touch.u));
+        let compression = normal.force + law.normal.adhesion;
+        let slip = touch.u - n * n.dot(&touch.u);
+        let s_b = touch.rot_b.tr_mul(&friction.eval_rate(&touch.s, &slip, compression).s);
+        slots.push(ContactMemory { pair: touch.pair, feature: touch.feature, s_b, point_b: touch.local_b });
+    }
+}
+
+/// Where a stage starts from.
+#[derive(Clone, Copy)]
+struct From<'a> {
+    start: &'a State,
+    rate: &'a Rates,
+    slots: &'a [ContactMemory],
+}
+
+/// The state at `start` + `k` times the rates.
+fn place(model: &Model, state: &mut State, displacement: &mut [f64], from: &From<'_>, k: f64) {
+    let From { start, rate, slots } = *from;
+    state.copy_from_physics(start);
+    state.time = start.time + k;
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        let gain = rate.base[i] * k;
+        state.bases[i] = moved_base(vehicle.base, &start.bases[i], &gain.lin, &gain.ang);
+        state.momentum[i] += rate.momentum[i] * k;
+        let xi = &mut displacement[vehicle.v_range()];
+        xi.iter_mut().zip(&rate.xi[vehicle.v_range()]).for_each(|(x, r)| *x = r * k);
+        vehicle.tree.retract(&mut state.q[vehicle.q_range()], xi);
+    }
+    state.v.iter_mut().zip(&rate.v).for_each(|(v, r)| *v += r * k);
+    state.bristles.clear();
+    let moved = slots.iter().zip(&rate.s).map(|(slot, r)| ContactMemory { s_b: slot.s_b + r * k, ..*slot });
+    state.bristles.extend(moved);
+}
+
+/// Rates at the present stage, whose kinematics and touches `ws` holds.
+fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Stages) {
+    let slots = rk.slots.len();
+    rk.rate.reset(model, slots);
+    eval_contacts(model, ws, rk);
+    eval_coordinates(model, state, ws, rk);
+    calc_external(model, state, ws);
+    calc_bias(model, state, ws, false);
+    if solve::factor(model, ws, 1.0) {
+        solve::solve(model, ws, 1.0);
+    } else {
+        ws.v_gain.fill(f64::NAN);
+    }
+    rk.rate.v.copy_from_slice(&ws.v_gain);
+    state.work.rate_evaluations += 1;
+    state.work.solves += 1;
+    ws.v_gain.fill(0.0);
+    ws.dvel.fill(Twist::default());
+    let account = state.account;
+    rk.rate.momentum.copy_from_slice(&state.momentum);
+    state.momentum.fill(Wrench::default());
+    state.account = Account::default();
+    add_impulses(model, state, ws, 1.0);
+    std::mem::swap(&mut rk.rate.momentum, &mut state.momentum);
+    (rk.rate.account, state.account) = (state.account, account);
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        let (q, v) = (vehicle.q_range(), vehicle.v_range());
+        let turned = log_rotation(&(state.bases[i].rotation * rk.start.bases[i].rotation.inverse()));
+        let twist = ws.kin[i].vel[0];
+        rk.rate.base[i] = Twist::new(rotation_rate_of_vector(&turned, &twist.ang), twist.lin);
+        let xi = &mut ws.displacement[v.clone()];
+        vehicle.tree.calc_difference(&rk.start.q[q.clone()], &state.q[q.clone()], xi);
+        vehicle.tree.calc_displacement_rate(&rk.start.q[q], xi, &state.v[v.clone()], &mut rk.rate.xi[v]);
+    }
+}
+
+fn eval_contacts(model: &Model, ws: &mut Workspace, rk: &mut Stages) {
+    for touch in &mut ws.touches {
+        let (law, n) = (&model.laws[touch.pair as usize], touch.normal);
+        let u_n = n.dot(&touch.u);
+        let normal = law.normal.eval(touch.gap, u_n);
+        touch.out.law = normal.force * n;
+        touch.out.normal_force = normal.force + law.normal.adhesion;
+        touch.out.g = Mat3::zeros();
+        if let Some(friction) = &law.friction {
+            let slip = touch.u - u_n * n;
+            let brush = friction.eval_rate(&touch.s, &slip, touch.out.normal_force);
+            touch.out.law += brush.force;
+            (touch.out.s, touch.out.sticks) = (brush.s, brush.sticks);
+            if let Some(slot) = find_memory(&rk.slots, touch.pair, touch.feature) {
+                rk.rate.s[slot] = touch.rot_b.tr_mul(&brush.s_rate);
+            }
+        }
+        (touch.out.line, touch.out.force) = (touch.out.law, touch.out.law);
+    }
+}
+
+fn eval_coordinates(model: &Model, state: &State, ws: &mut Workspace, rk: &Stages) {
+    for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
+        let (q, v) = (state.q[coordinate.q_index], state.v[i]);
+        let point = CoordinatePoint {
+            q_base: q,
+            moved_base: q - rk.start.q[coordinate.q_index],
+            v_start: v,
+            beta: 0.0,
+            theta: 0.0,
+            dry_start: rk.start.dry[i],
+            elapsed: model.step,
+        };
+        let force = coordinate.eval(&point, v, &model.actuators, &state.commands);
+        ws.coordinate_forces[i] = force;
+        ws.coordinate_lines[i] = (force.effort, 0.0);
+    }
+}

@@ -1,0 +1,269 @@
+//! The linear system of one pass, island by island.
+//!
+//!   A dv = h (τ − c + Jᵀ f),   A = M + Jᵀ G J + diag(slopes · h)
+//!
+//! JᵀGJ within a vehicle is the mass matrix of links whose inertia is increased by S = Σ XᵀGX; between two bodies only
+//! −J_aᵀ S_ab J_b is extra, once per pair of bodies. Vehicles that touch form an island; each island is factored by
+//! itself (UᵀU, upper triangle, row-major: inner loops run along rows and keep one order of addition).
+
+use crate::model::Model;
+use crate::workspace::Workspace;
+use multibody::{Kinematics, Tree};
+use spatial::{SpatialMatrix, Twist, Vec3, Wrench};
+
+/// Row of a body's freedom that its base's guide holds.
+const HELD: usize = usize::MAX;
+
+/// The islands of this step and the storage of their systems.
+#[derive(Clone, Debug)]
+pub(crate) struct Islands {
+    /// Island's representative, by vehicle.
+    group: Vec<usize>,
+    /// Per vehicle: row in its island's system of base freedoms and coordinates (`HELD` where there is none).
+    rows: Vec<Vec<usize>>,
+    /// Per representative: size and start in `matrix`.
+    size: Vec<usize>,
+    start: Vec<usize>,
+    matrix: Vec<f64>,
+    rhs: Vec<Vec<f64>>,
+    scratch: Vec<f64>,
+}
+
+impl Islands {
+    pub fn new(model: &Model) -> Self {
+        let n: usize = model.vehicles.iter().map(|v| 6 + v.tree.nv).sum();
+        let largest = model.vehicles.iter().map(|v| 6 + v.tree.nv).max().unwrap_or(0);
+        Self {
+            group: vec![0; model.vehicles.len()],
+            rows: model.vehicles.iter().map(|v| vec![HELD; 6 + v.tree.nv]).collect(),
+            size: vec![0; model.vehicles.len()],
+            start: vec![0; model.vehicles.len()],
+            matrix: vec![0.0; n * n],
+            rhs: model.vehicles.iter().map(|_| Vec::with_capacity(n)).collect(),
+            scratch: vec![0.0; largest * largest],
+        }
+    }
+
+    /// Groups the vehicles that touch and numbers their freedoms.
+    pub fn regroup(&mut self, model: &Model, touches: &[crate::contacts::Touch]) {
+        for (i, group) in self.group.iter_mut().enumerate() {
+            *group = i;
+        }
+        for touch in touches {
+            if let (Some(&(a, _)), Some(&(b, _))) = (model.owners.get(touch.body_a), model.owners.get(touch.body_b)) {
+                let (low, high) = (self.group[a].min(self.group[b]), self.group[a].max(self.group[b]));
+                self.group.iter_mut().filter(|g| **g == high).for_each(|g| *g = low);
+            }
+        }
+        self.size.fill(0);
+        for (i, vehicle) in model.vehicles.iter().enumerate() {
+            let (size, mask) = (&mut self.size[self.group[i]], vehicle.base.mask());
+            for (k, row) in self.rows[i].iter_mut().enumerate() {
+                *row = if k >= 6 || mask[k] { *size } else { HELD };
+                *size += usize::from(*row != HELD);
+            }
+        }
+        let mut start = 0;
+        for (i, size) in self.size.iter().enumerate() {
+            self.start[i] = start;
+            start += size * size;
+            self.rhs[i].clear();
+            self.rhs[i].resize(*size, 0.0);
+        }
+        self.matrix[..start].fill(0.0);
+    }
+}
+
+/// Assembles and factors every island's matrix; returns `false` if one is not positive definite.
+pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
+    ws.extra.fill(SpatialMatrix::default());
+    for touch in &ws.touches {
+        for body in [touch.body_a, touch.body_b] {
+            if let Some(&(vehicle, _)) = model.owners.get(body) {
+                let r = touch.point - ws.kin[vehicle].anchor;
+                ws.extra[body] += SpatialMatrix::from_point(&touch.out.g, &r, &r);
+            }
+        }
+    }
+    ws.islands.regroup(model, &ws.touches);
+    for i in 0..model.vehicles.len() {
+        add_vehicle(model, ws, i, h);
+    }
+    add_cross_terms(model, ws);
+    let Islands { size, start, matrix, .. } = &mut ws.islands;
+    size.iter().zip(start.iter()).all(|(n, at)| cholesky(&mut matrix[*at..*at + n * n], *n))
+}
+
+fn add_vehicle(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
+    let vehicle = &model.vehicles[i];
+    let n = 6 + vehicle.tree.nv;
+    let extra = &ws.extra[vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len()];
+    let islands = &mut ws.islands;
+    ws.dynamics[i].calc_mass_matrix(&vehicle.tree, &ws.kin[i], extra, &mut islands.scratch[..n * n], n);
+    let group = islands.group[i];
+    let (at, stride, rows) = (islands.start[group], islands.size[group], &islands.rows[i]);
+    for (k, &row) in rows.iter().enumerate().filter(|(_, r)| **r != HELD) {
+        let target = &mut islands.matrix[at + row * stride..at + (row + 1) * stride];
+        for (l, &column) in rows.iter().enumerate().filter(|(_, c)| **c != HELD) {
+            target[column] = islands.scratch[k * n + l];
+        }
+        if k >= 6 {
+            target[row] += h * ws.coordinate_lines[vehicle.v0 + k - 6].1;
+        }
+    }
+}
+
+fn add_cross_terms(model: &Model, ws: &mut Workspace) {
+    let mut i = 0;
+    while i < ws.touches.len() {
+        let (a, b) = (ws.touches[i].body_a, ws.touches[i].body_b);
+        let both = model.owners.get(a).zip(model.owners.get(b));
+        let mut coupling = SpatialMatrix::default();
+        while i < ws.touches.len() && (ws.touches[i].body_a, ws.touches[i].body_b) == (a, b) {
+            if let Some((&(va, _), &(vb, _))) = both {
+                let touch = &ws.touches[i];
+                let (ra, rb) = (touch.point - ws.kin[va].anchor, touch.point - ws.kin[vb].anchor);
+                coupling += SpatialMatrix::from_point(&touch.out.g, &ra, &rb);
+            }
+            i += 1;
+        }
+        if let Some((&(va, la), &(vb, lb))) = both {
+            let islands = &mut ws.islands;
+            let group = islands.group[va];
+            let (at, n) = (islands.start[group], islands.size[group]);
+            let (rows_a, rows_b, matrix) = (&islands.rows[va], &islands.rows[vb], &mut islands.matrix[at..]);
+            for_path(&model.vehicles[vb].tree, &ws.kin[vb], lb, |l, screw_b| {
+                let column = rows_b[l];
+                let wrench = coupling.mul(screw_b);
+                for_path(&model.vehicles[va].tree, &ws.kin[va], la, |k, screw_a| {
+                    let row = rows_a[k];
+                    if row != HELD && column != HELD {
+                        let value = screw_a.dot(&wrench);
+                        matrix[row * n + column] -= value;
+                        matrix[column * n + row] -= value;
+                    }
+                });
+            });
+        }
+    }
+}
+
+/// Visits the freedoms that move a body, with their screws: base first, then from the tip inwards.
+fn for_path(tree: &Tree, kin: &Kinematics, body: usize, mut visit: impl FnMut(usize, &Twist)) {
+    for k in 0..3 {
+        visit(k, &Twist::new(Vec3::ith(k, 1.0), Vec3::zeros()));
+        visit(3 + k, &Twist::new(Vec3::zeros(), Vec3::ith(k, 1.0)));
+    }
+    let mut at = body;
+    while at != 0 {
+        let joint = &tree.joints[at - 1];
+        for k in 0..joint.width {
+            visit(6 + joint.v_index + k, &kin.screws[joint.column + k]);
+        }
+        at = tree.bodies[at].parent;
+    }
+}
+
+/// Solves for the gains of all twists and rates, from the factored matrices and the lines' forces at zero gain.
+pub(crate) fn solve(model: &Model, ws: &mut Workspace, h: f64) {
+    ws.contact.fill(Wrench::default());
+    for touch in &ws.touches {
+        for (body, sign) in [(touch.body_a, -1.0), (touch.body_b, 1.0)] {
+            if let Some(&(vehicle, _)) = model.owners.get(body) {
+                let r = touch.point - ws.kin[vehicle].anchor;
+                ws.contact[body] += Wrench::from_force_at(sign * touch.out.line, &r);
+            }
+        }
+    }
+    for i in 0..model.vehicles.len() {
+        write_rhs(model, ws, i, h);
+    }
+    let Islands { size, start, matrix, rhs, .. } = &mut ws.islands;
+    for i in 0..size.len() {
+        back_substitute(&matrix[start[i]..start[i] + size[i] * size[i]], &mut rhs[i]);
+    }
+    for i in 0..model.vehicles.len() {
+        read_gains(model, ws, i);
+    }
+}
+
+fn write_rhs(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
+    let vehicle = &model.vehicles[i];
+    for body in 0..vehicle.tree.bodies.len() {
+        ws.dynamics[i].wrench[body] = ws.bias[vehicle.body0 + body] - ws.contact[vehicle.body0 + body];
+    }
+    let tau = &mut ws.tau[vehicle.v_range()];
+    let base = ws.dynamics[i].collect(&vehicle.tree, &ws.kin[i], tau);
+    let islands = &mut ws.islands;
+    let rhs = &mut islands.rhs[islands.group[i]];
+    for (k, &row) in islands.rows[i].iter().enumerate().filter(|(_, r)| **r != HELD) {
+        rhs[row] = match k {
+            0..3 => -h * base.moment[k],
+            3..6 => -h * base.force[k - 3],
+            _ => h * (ws.coordinate_lines[vehicle.v0 + k - 6].0 - tau[k - 6]),
+        };
+    }
+}
+
+fn read_gains(model: &Model, ws: &mut Workspace, i: usize) {
+    let vehicle = &model.vehicles[i];
+    let islands = &ws.islands;
+    let rhs = &islands.rhs[islands.group[i]];
+    let gain = |k: usize| if islands.rows[i][k] == HELD { 0.0 } else { rhs[islands.rows[i][k]] };
+    let base = Twist::new(Vec3::new(gain(0), gain(1), gain(2)), Vec3::new(gain(3), gain(4), gain(5)));
+    for k in 0..vehicle.tree.nv {
+        ws.v_gain[vehicle.v0 + k] = gain(6 + k);
+    }
+    ws.base_gain[i] = base;
+    ws.dvel[vehicle.body0] = base;
+    for (j, joint) in vehicle.tree.joints.iter().enumerate() {
+        let mut twist = ws.dvel[vehicle.body0 + vehicle.tree.bodies[j + 1].parent];
+        for k in 0..joint.width {
+            twist += ws.kin[i].screws[joint.column + k] * ws.v_gain[vehicle.v0 + joint.v_index + k];
+        }
+        ws.dvel[vehicle.body0 + j + 1] = twist;
+    }
+}
+
+/// A = UᵀU in place, upper triangle.
+fn cholesky(a: &mut [f64], n: usize) -> bool {
+    for k in 0..n {
+        let (above, below) = a.split_at_mut((k + 1) * n);
+        let pivot_row = &mut above[k * n + k..];
+        let pivot = pivot_row[0];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return false;
+        }
+        let inverse = 1.0 / pivot.sqrt();
+        pivot_row.iter_mut().for_each(|x| *x *= inverse);
+        for i in k + 1..n {
+            let factor = pivot_row[i - k];
+            if factor != 0.0 {
+                let row = &mut below[(i - k - 1) * n + i..(i - k) * n];
+                for (x, p) in row.iter_mut().zip(&pivot_row[i - k..]) {
+                    *x -= factor * p;
+                }
+            }
+        }
+    }
+    true
+}
+
+/// x with UᵀU x = b, in place.
+fn back_substitute(u: &[f64], b: &mut [f64]) {
+    let n = b.len();
+    for k in 0..n {
+        b[k] /= u[k * n + k];
+        let value = b[k];
+        for i in k + 1..n {
+            b[i] -= u[k * n + i] * value;
+        }
+    }
+    for k in (0..n).rev() {
+        let mut value = b[k];
+        for i in k + 1..n {
+            value -= u[k * n + i] * b[i];
+        }
+        b[k] = value / u[k * n + k];
+    }
+}

@@ -1,0 +1,135 @@
+//! All the memory that the physics has: plain data; cloning it is a snapshot.
+//!
+//! The base twist is not a state. It follows from the momentum and the joint rates:
+//!   V_B = I_lock⁻¹ (h − Σ I_i V_i^rel),    h = (L − x_B × p, p),
+//! so that poses and twists carry exactly (p, L), and only forces from outside can change them.
+
+use crate::model::Model;
+use serde::{Deserialize, Serialize};
+use spatial::{Pose, Vec3, Wrench};
+
+/// The world at one instant.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Time, s: `steps` times the step.
+    pub time: f64,
+    /// Steps made since the start.
+    pub steps: u64,
+    /// Base pose of every vehicle.
+    pub bases: Vec<Pose>,
+    /// Joint coordinates of all vehicles.
+    pub q: Vec<f64>,
+    /// Joint rates of all vehicles.
+    pub v: Vec<f64>,
+    /// Per vehicle: angular momentum about W's origin (moment slot, N·m·s), linear momentum (force slot, N·s). Components
+    /// that the base's guide holds are not kept.
+    pub momentum: Vec<Wrench>,
+    /// Touching points' bristles, sorted by pair and feature.
+    pub bristles: Vec<ContactMemory>,
+    /// Deflection of dry joint friction, by coordinate, rad or m.
+    pub dry: Vec<f64>,
+    /// The controller's memory; its meaning is the controller's.
+    pub controller: Vec<f64>,
+    /// The commands that act at present.
+    pub commands: Vec<crate::Command>,
+    /// What came from outside since the start.
+    pub account: Account,
+    /// Work counters since the start.
+    pub work: Work,
+}
+
+/// The bristle of one touching point.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactMemory {
+    /// The scene's pair.
+    pub pair: u32,
+    /// Identity within the pair.
+    pub feature: u64,
+    /// Deflection, in B's body axes, m.
+    pub s_b: Vec3,
+    /// The point in B's body frame, m: identity of last resort.
+    pub point_b: Vec3,
+}
+
+/// Sums over the run of what crosses the system's border, and of what the laws dissipate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Account {
+    /// Impulse of external forces on all vehicles, about W's origin, N·s and N·m·s.
+    pub impulse: Wrench,
+    /// Work of gravity, tides and thrusters, J.
+    pub external_work: f64,
+    /// Work of joint actuators, J.
+    pub actuator_work: f64,
+    /// Work of joint damping, dry friction and stops, J (negative: taken out).
+    pub passive_joint_work: f64,
+    /// Work of contact forces, J (negative: stored or dissipated).
+    pub contact_work: f64,
+}
+
+/// Work counters: they show numeric drift without a clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Work {
+    /// Steps.
+    pub steps: u64,
+    /// Evaluations of the equations of motion.
+    pub rate_evaluations: u64,
+    /// Pairs of shapes that were tested closely.
+    pub contact_queries: u64,
+    /// Linear solves.
+    pub solves: u64,
+    /// Steps that ended before the contact laws were met to tolerance.
+    pub unconverged_steps: u64,
+}
+
+impl State {
+    /// Every vehicle at the origin, every joint at zero, nothing moving.
+    pub fn new(model: &Model) -> Self {
+        Self {
+            time: 0.0,
+            steps: 0,
+            bases: vec![Pose::identity(); model.vehicles.len()],
+            q: model.vehicles.iter().flat_map(|v| v.tree.q_zero.iter().copied()).collect(),
+            v: vec![0.0; model.nv()],
+            momentum: vec![Wrench::default(); model.vehicles.len()],
+            bristles: Vec::new(),
+            dry: vec![0.0; model.nv()],
+            controller: Vec::new(),
+            commands: vec![crate::Command::default(); model.actuators.len()],
+            account: Account::default(),
+            work: Work::default(),
+        }
+    }
+
+    /// Copies what a stage of an integrator changes.
+    pub(crate) fn copy_from_physics(&mut self, other: &Self) {
+        self.bases.clone_from(&other.bases);
+        self.q.clone_from(&other.q);
+        self.v.clone_from(&other.v);
+        self.momentum.clone_from(&other.momentum);
+    }
+
+    /// Copies `other` into this one without allocating where sizes match.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        (self.time, self.steps) = (other.time, other.steps);
+        self.bases.clone_from(&other.bases);
+        self.q.clone_from(&other.q);
+        self.v.clone_from(&other.v);
+        self.momentum.clone_from(&other.momentum);
+        self.bristles.clone_from(&other.bristles);
+        self.dry.clone_from(&other.dry);
+        self.controller.clone_from(&other.controller);
+        self.commands.clone_from(&other.commands);
+        (self.account, self.work) = (other.account, other.work);
+    }
+}
+
+impl Account {
+    /// Adds `k` times another account.
+    pub(crate) fn add_scaled(&mut self, other: &Self, k: f64) {
+        self.impulse += other.impulse * k;
+        self.external_work += other.external_work * k;
+        self.actuator_work += other.actuator_work * k;
+        self.passive_joint_work += other.passive_joint_work * k;
+        self.contact_work += other.contact_work * k;
+    }
+}

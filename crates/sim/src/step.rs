@@ -1,0 +1,371 @@
+//! One step, readable: where forces are evaluated, how they are solved for, and how momentum and poses follow.
+//!
+//! The three one-solve schemes share this code; they differ in where the laws are evaluated ([`Scheme`]). Per step:
+//!
+//! 1. external wrenches, bias by inverse dynamics at zero acceleration, touching points;
+//! 2. laws at the predicted end, A dv = h (τ − c + Jᵀf), and a check of the laws at the solution: where the line
+//!    missed the law, a new line and a new solve (at most eight);
+//! 3. momentum takes the forces that both bodies felt; poses move with the solved velocities;
+//! 4. kinematics at the new pose, base twist from momentum, bristles from the displacement of material points.
+//!
+//! Derivation, costs and the traps: crate documentation.
+
+use crate::actuator::{ActuatorKind, CoordinatePoint};
+use crate::contacts::{Place, Touch, commit_bristles, find_touches};
+use crate::model::{Base, Model};
+use crate::solve;
+use crate::state::State;
+use crate::workspace::{Workspace, world_wrench};
+use multibody::Accelerations;
+use spatial::{Pose, Twist, Vec3, Wrench, exp_rotation};
+
+/// Where the laws of a step are evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scheme {
+    ImplicitEuler,
+    ImplicitMidpoint,
+    SemiImplicitEuler,
+}
+
+/// Relative difference between the line's force and the law's that asks for a new solve.
+const LAW_TOLERANCE: f64 = 1e-3;
+/// Force (N or N·m) below which a difference is round-off and nobody's business.
+const FORCE_FLOOR: f64 = 1e-10;
+/// Most solves in a step.
+const MAX_SOLVES: u32 = 8;
+/// Largest (h ω)² at which the midpoint rule resolves a contact; beyond it the stiff form takes over.
+const RESOLVED: f64 = 0.1;
+
+/// Advances the world by one step; `ws` holds the kinematics of `state`.
+pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
+    let h = model.step;
+    begin(model, state, ws);
+    if scheme == Scheme::ImplicitMidpoint {
+        drift_to_midpoint(model, state, ws, 0.5 * h);
+    }
+    calc_external(model, state, ws);
+    calc_bias(model, state, ws, false);
+    find_touches(model, state, ws, h);
+    place_laws(model, state, ws, scheme);
+    solve_laws(model, state, ws, scheme);
+    add_impulses(model, state, ws, h);
+    match scheme {
+        Scheme::ImplicitMidpoint => drift_from_midpoint(model, state, ws, 0.5 * h),
+        _ => drift(model, state, ws, h),
+    }
+    finish(model, state, ws);
+    commit_bristles(model, state, ws);
+}
+
+/// Keeps what the end of the step needs of its start.
+pub(crate) fn begin(model: &Model, state: &State, ws: &mut Workspace) {
+    ws.frames_start.copy_from_slice(&ws.frames);
+    ws.q_start.copy_from_slice(&state.q);
+    for i in 0..model.vehicles.len() {
+        ws.base_start[i] = ws.kin[i].vel[0];
+    }
+}
+
+/// Kinematics at the new state, and what is remembered of it.
+pub(crate) fn finish(model: &Model, state: &mut State, ws: &mut Workspace) {
+    ws.update_positions(model, state);
+    ws.update_velocities(model, state);
+    for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| c.dry.is_some()) {
+        let moved = state.q[coordinate.q_index] - ws.q_start[coordinate.q_index];
+        state.dry[i] = coordinate.advance_dry(state.dry[i], moved, model.step);
+    }
+    state.steps += 1;
+    state.time = state.steps as f64 * model.step;
+    state.work.steps += 1;
+    state.work.contact_queries = ws.detector.narrow_count();
+}
+
+/// Forces from outside on every body, about its vehicle's anchor.
+pub(crate) fn calc_external(model: &Model, state: &State, ws: &mut Workspace) {
+    for (body, &(vehicle, local)) in model.owners.iter().enumerate() {
+        let kin = &ws.kin[vehicle];
+        ws.external[body] = model.environment.calc_wrench(state.time, &kin.anchor, &kin.inertia[local]);
+    }
+    for (actuator, command) in model.actuators.iter().zip(&state.commands) {
+        if let ActuatorKind::Thruster { body, position, direction, max_force } = actuator.kind {
+            let (vehicle, local) = model.owners[body];
+            let kin = &ws.kin[vehicle];
+            let r = kin.pos[local] + kin.rot[local] * position;
+            let force = kin.rot[local] * (command.effort.clamp(0.0, max_force) * direction);
+            ws.external[body] += Wrench::from_force_at(force, &r);
+        }
+    }
+}
+
+/// What motion takes beyond the external forces, at zero acceleration: with the start's velocities, or with those half
+/// a gain later (midpoint).
+pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_gain: bool) {
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        let range = vehicle.v_range();
+        for k in range.clone() {
+            ws.v_mid[k] = state.v[k] + if half_gain { 0.5 * ws.v_gain[k] } else { 0.0 };
+        }
+        let motion = Accelerations { base: Twist::default(), v: &ws.v_mid[range.clone()], v_dot: &ws.zero[range] };
+        let bodies = vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len();
+        ws.dynamics[i].calc_body_wrenches(&vehicle.tree, &ws.kin[i], &motion, &ws.external[bodies.clone()]);
+        ws.bias[bodies].copy_from_slice(&ws.dynamics[i].wrench);
+    }
+}
+
+/// Decides for every touch and coordinate where its law is evaluated, and draws the first lines at zero gain.
+fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) {
+    let h = model.step;
+    for touch in &mut ws.touches {
+        touch.place = place_of(scheme, touch, h);
+        let law = &model.laws[touch.pair as usize];
+        if scheme == Scheme::ImplicitMidpoint && is_stiff(model, touch, law, h) {
+            touch.place = Place { gap_base: touch.gap, s_base: touch.s, beta: h, theta: 1.0, elapsed: h };
+        }
+        let u = touch.u;
+        touch.out = touch.eval(law, &u, h);
+        if scheme == Scheme::SemiImplicitEuler {
+            touch.out.g = spatial::Mat3::zeros();
+            touch.out.line = touch.out.law;
+        }
+    }
+    for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
+        let (q, v) = (state.q[coordinate.q_index], state.v[i]);
+        // At the midpoint q has drifted by h/2 v already: its base is the start's plus h/4 v.
+        let (beta, theta, q_base, moved_base, elapsed) = match scheme {
+            Scheme::ImplicitEuler => (h, 1.0, q, 0.0, h),
+            Scheme::ImplicitMidpoint => (0.25 * h, 0.5, q - 0.25 * h * v, 0.25 * h * v, 0.5 * h),
+            Scheme::SemiImplicitEuler => (0.0, 0.0, q, h * v, h),
+        };
+        let point =
+            CoordinatePoint { q_base, moved_base, v_start: v, beta, theta, dry_start: state.dry[i], elapsed };
+        let force = coordinate.eval(&point, v, &model.actuators, &state.commands);
+        ws.coordinate_points[i] = point;
+        ws.coordinate_forces[i] = force;
+        ws.coordinate_lines[i] = (force.effort, force.slope);
+    }
+}
+
+fn place_of(scheme: Scheme, touch: &Touch, h: f64) -> Place {
+    let (u_n, n) = (touch.normal.dot(&touch.u), touch.normal);
+    let u_t = touch.u - u_n * n;
+    match scheme {
+        Scheme::ImplicitEuler => Place { gap_base: touch.gap, s_base: touch.s, beta: h, theta: 1.0, elapsed: h },
+        Scheme::ImplicitMidpoint => Place {
+            gap_base: touch.gap - 0.25 * h * u_n,
+            s_base: touch.s + 0.25 * h * u_t,
+            beta: 0.25 * h,
+            theta: 0.5,
+            elapsed: 0.5 * h,
+        },
+        Scheme::SemiImplicitEuler => {
+            Place { gap_base: touch.gap, s_base: touch.s + h * u_t, beta: 0.0, theta: 0.0, elapsed: h }
+        }
+    }
+}
+
+/// Whether a contact oscillates too fast for the midpoint rule to resolve it: (h ω)² > 0.1 with ω² = k/m, m the lighter
+/// body's mass (a lower bound of the effective mass would call more contacts stiff; this one is cheap and safe enough,
+/// since both forms converge).
+fn is_stiff(model: &Model, touch: &Touch, law: &crate::model::PairLaw, h: f64) -> bool {
+    let mass = |body: usize| {
+        model.owners.get(body).map_or(f64::INFINITY, |&(v, b)| model.vehicles[v].tree.bodies[b].inertia.mass)
+    };
+    let lighter = mass(touch.body_a).min(mass(touch.body_b));
+    let normal = law.normal.eval(touch.gap.min(-1e-5), 0.0);
+    let stiffness = (-normal.d_gap).max(law.friction.map_or(0.0, |f| f.stiffness));
+    h * h * stiffness > RESOLVED * lighter
+}
+
+/// Solves, checks the laws at the solution, and draws new lines where they missed.
+fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
+    let h = model.step;
+    let mut must_factor = true;
+    let mut converged = false;
+    for pass in 0..MAX_SOLVES {
+        if must_factor && !solve::factor(model, ws, h) {
+            ws.v_gain.fill(f64::NAN);
+            return;
+        }
+        solve::solve(model, ws, h);
+        state.work.solves += 1;
+        state.work.rate_evaluations += 1;
+        let first_midpoint_pass = scheme == Scheme::ImplicitMidpoint && pass == 0;
+        if first_midpoint_pass {
+            recalc_bias_at_midpoint(model, state, ws);
+        }
+        converged = scheme == Scheme::SemiImplicitEuler || laws_hold(model, state, ws, h);
+        must_factor = !converged;
+        if converged && !first_midpoint_pass {
+            break;
+        }
+    }
+    state.work.unconverged_steps += u64::from(!converged);
+}
+
+/// Once the gains are known, velocity-dependent forces are taken at the mean velocity.
+fn recalc_bias_at_midpoint(model: &Model, state: &State, ws: &mut Workspace) {
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        let base = ws.base_start[i];
+        let gain = classical_gain(&ws.base_gain[i], &base, model.step);
+        for k in vehicle.v_range() {
+            ws.v_mid[k] = state.v[k] + 0.5 * ws.v_gain[k];
+        }
+        let (kin, range) = (&mut ws.kin[i], vehicle.v_range());
+        kin.update_velocities(&vehicle.tree, &(base + gain * 0.5), &ws.v_mid[range]);
+    }
+    calc_bias(model, state, ws, true);
+    // The start's twists come back: gains are counted from them.
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        let (start, range) = (ws.base_start[i], vehicle.v_range());
+        ws.kin[i].update_velocities(&vehicle.tree, &start, &state.v[range]);
+    }
+}
+
+/// Gain of (ω, velocity of the base origin) from the spatial gain: the origin moves, so ω × v is added.
+fn classical_gain(gain: &Twist, base: &Twist, h: f64) -> Twist {
+    Twist::new(gain.ang, gain.lin + h * base.ang.cross(&base.lin))
+}
+
+/// Evaluates all laws at the solution; where a line missed, draws the next one. `true` if none did.
+fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
+    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    for i in 0..ws.touches.len() {
+        let mut touch = ws.touches[i];
+        let gain = relative_gain(model, ws, &touch);
+        let force = touch.out.line - touch.out.g * gain / h;
+        let next = touch.eval(&model.laws[touch.pair as usize], &(touch.u + gain), h);
+        worst = worst.max((next.law - force).norm());
+        largest = largest.max(next.law.norm());
+        touch.out = next;
+        touch.out.force = force;
+        ws.touches[i] = touch;
+    }
+    let mut joints_hold = true;
+    for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
+        let (effort, slope) = ws.coordinate_lines[i];
+        let v_new = state.v[i] + ws.v_gain[i];
+        let on_line = effort - slope * ws.v_gain[i];
+        let law = coordinate.eval(&ws.coordinate_points[i], v_new, &model.actuators, &state.commands);
+        joints_hold &= (law.effort - on_line).abs() <= LAW_TOLERANCE * law.effort.abs() + FORCE_FLOOR;
+        ws.coordinate_forces[i] = crate::actuator::CoordinateForce { effort: on_line, ..law };
+        ws.coordinate_lines[i] = (law.effort + law.slope * ws.v_gain[i], law.slope);
+    }
+    joints_hold && worst <= LAW_TOLERANCE * largest + FORCE_FLOOR
+}
+
+/// Gain of the relative velocity of a touch's material points.
+fn relative_gain(model: &Model, ws: &Workspace, touch: &Touch) -> Vec3 {
+    let at = |body: usize| {
+        let Some(&(vehicle, _)) = model.owners.get(body) else { return Vec3::zeros() };
+        ws.dvel[body].at(&(touch.point - ws.kin[vehicle].anchor))
+    };
+    at(touch.body_b) - at(touch.body_a)
+}
+
+/// Momentum and accounts: every contact gives the same numbers to both sides.
+pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: f64) {
+    for touch in &ws.touches {
+        let impulse = h * touch.out.force;
+        let moment = touch.point.cross(&impulse);
+        let error = h * model.one_sided_force;
+        add_impulse(model, state, ws, touch.body_a, &touch.point, &Wrench::new(-moment, -impulse));
+        let on_b = Wrench::new(moment + touch.point.cross(&error), impulse + error);
+        add_impulse(model, state, ws, touch.body_b, &touch.point, &on_b);
+        let u_new = touch.u + relative_gain(model, ws, touch);
+        state.account.contact_work += impulse.dot(&u_new);
+    }
+    for (i, _) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
+        let force = &ws.coordinate_forces[i];
+        let moved = h * (state.v[i] + ws.v_gain[i]);
+        state.account.actuator_work += force.driven * moved;
+        state.account.passive_joint_work += (force.effort - force.driven) * moved;
+    }
+    for (body, &(vehicle, local)) in model.owners.iter().enumerate() {
+        let external = ws.external[body];
+        if external == Wrench::default() {
+            continue;
+        }
+        let (owner, kin) = (&model.vehicles[vehicle], &ws.kin[vehicle]);
+        let impulse = world_wrench(owner, &kin.anchor, &(external * h));
+        state.momentum[vehicle] += impulse;
+        state.account.impulse += impulse;
+        state.account.external_work += h * (kin.vel[local] + ws.dvel[body] * 0.5).dot(&external);
+    }
+}
+
+fn add_impulse(model: &Model, state: &mut State, ws: &Workspace, body: usize, point: &Vec3, impulse: &Wrench) {
+    let Some(&(vehicle, _)) = model.owners.get(body) else { return };
+    let owner = &model.vehicles[vehicle];
+    if owner.base == Base::Free {
+        state.momentum[vehicle] += *impulse;
+    } else if owner.base != Base::Fixed {
+        let anchor = ws.kin[vehicle].anchor;
+        let about_anchor = Wrench::from_force_at(impulse.force, &(point - anchor));
+        state.momentum[vehicle] += world_wrench(owner, &anchor, &about_anchor);
+    }
+}
+
+/// Poses with the solved velocities: base on SE(3) (the spatial twist about the start's anchor), joints on their manifolds.
+fn drift(model: &Model, state: &mut State, ws: &mut Workspace, h: f64) {
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        let twist = ws.kin[i].vel[0] + ws.base_gain[i];
+        let moved = h * twist.lin + 0.5 * h * h * twist.ang.cross(&twist.lin);
+        state.bases[i] = moved_base(vehicle.base, &state.bases[i], &moved, &(h * twist.ang));
+    }
+    for k in 0..state.v.len() {
+        state.v[k] += ws.v_gain[k];
+    }
+    drift_joints(model, state, ws, h);
+}
+
+fn drift_joints(model: &Model, state: &mut State, ws: &mut Workspace, h: f64) {
+    for vehicle in &model.vehicles {
+        let (q, v) = (vehicle.q_range(), vehicle.v_range());
+        let xi = &mut ws.displacement[v.clone()];
+        vehicle.tree.calc_displacement(&state.q[q.clone()], &state.v[v], h, xi);
+        vehicle.tree.retract(&mut state.q[q], xi);
+    }
+}
+
+pub(crate) fn moved_base(base: Base, pose: &Pose, moved: &Vec3, turned: &Vec3) -> Pose {
+    if base == Base::Fixed {
+        return *pose;
+    }
+    let mask = base.mask();
+    let moved = Vec3::from_fn(|i, _| if mask[3 + i] { moved[i] } else { 0.0 });
+    Pose::from_parts((pose.translation.vector + moved).into(), exp_rotation(turned) * pose.rotation)
+}
+
+/// Midpoint: half a step with the start's velocities, and kinematics there with the same generalised velocities.
+fn drift_to_midpoint(model: &Model, state: &mut State, ws: &mut Workspace, half: f64) {
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        let twist = ws.kin[i].vel[0];
+        state.bases[i] = moved_base(vehicle.base, &state.bases[i], &(half * twist.lin), &(half * twist.ang));
+    }
+    drift_joints(model, state, ws, half);
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        let base = ws.base_start[i];
+        let kin = &mut ws.kin[i];
+        kin.update_positions(&vehicle.tree, &state.bases[i], &state.q[vehicle.q_range()]);
+        kin.update_velocities(&vehicle.tree, &base, &state.v[vehicle.v_range()]);
+        for body in 0..vehicle.tree.bodies.len() {
+            ws.frames[vehicle.body0 + body] = kin.frame(body);
+        }
+    }
+}
+
+/// Midpoint: the second half with the end's velocities.
+fn drift_from_midpoint(model: &Model, state: &mut State, ws: &mut Workspace, half: f64) {
+    let h = 2.0 * half;
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        let start = ws.base_start[i];
+        let mid = start + classical_gain(&ws.base_gain[i], &start, h) * 0.5;
+        let gain = Twist::new(ws.base_gain[i].ang, ws.base_gain[i].lin + h * mid.ang.cross(&mid.lin));
+        let end = start + gain;
+        state.bases[i] = moved_base(vehicle.base, &state.bases[i], &(half * end.lin), &(half * end.ang));
+    }
+    for k in 0..state.v.len() {
+        state.v[k] += ws.v_gain[k];
+    }
+    drift_joints(model, state, ws, half);
+}

@@ -1,0 +1,167 @@
+//! Scratch of a step: sized once from the model, so that a step allocates nothing.
+
+use crate::actuator::{CoordinateForce, CoordinatePoint};
+use crate::contacts::Touch;
+use crate::model::{Base, Model, Vehicle};
+use crate::state::State;
+use contact::{ContactPoint, Detector};
+use multibody::{Dynamics, Kinematics, calc_locked_inertia, calc_momentum};
+use spatial::{Frame, SpatialMatrix, Twist, Vec3, Wrench, nalgebra};
+
+/// Scratch of one world; holds nothing that a result depends on.
+#[derive(Debug)]
+pub(crate) struct Workspace {
+    pub kin: Vec<Kinematics>,
+    pub dynamics: Vec<Dynamics>,
+    /// Frames of all bodies in W; the world's is the last.
+    pub frames: Vec<Frame>,
+    pub frames_start: Vec<Frame>,
+    pub detector: Detector,
+    pub points: Vec<ContactPoint>,
+    pub reach: Vec<f64>,
+    pub touches: Vec<Touch>,
+    /// Per body, about its vehicle's anchor: forces from outside, then what motion takes beyond them.
+    pub external: Vec<Wrench>,
+    pub bias: Vec<Wrench>,
+    pub contact: Vec<Wrench>,
+    pub extra: Vec<SpatialMatrix>,
+    /// Change of the bodies' twists in the step; the world's is the last and zero.
+    pub dvel: Vec<Twist>,
+    pub base_start: Vec<Twist>,
+    pub base_gain: Vec<Twist>,
+    pub q_start: Vec<f64>,
+    pub v_gain: Vec<f64>,
+    pub v_mid: Vec<f64>,
+    pub tau: Vec<f64>,
+    pub zero: Vec<f64>,
+    pub displacement: Vec<f64>,
+    pub coordinate_points: Vec<CoordinatePoint>,
+    pub coordinate_forces: Vec<CoordinateForce>,
+    /// Linearisation of the coordinate laws: effort at zero gain, and slope.
+    pub coordinate_lines: Vec<(f64, f64)>,
+    pub islands: crate::solve::Islands,
+    pub memories: Vec<crate::state::ContactMemory>,
+    pub rk: crate::rk4::Stages,
+    pub backup: State,
+}
+
+impl Workspace {
+    pub fn new(model: &Model) -> Self {
+        let (bodies, nv) = (model.owners.len() + 1, model.nv());
+        let point = CoordinatePoint {
+            q_base: 0.0,
+            moved_base: 0.0,
+            v_start: 0.0,
+            beta: 0.0,
+            theta: 0.0,
+            dry_start: 0.0,
+            elapsed: 1.0,
+        };
+        Self {
+            kin: model.vehicles.iter().map(|v| Kinematics::new(&v.tree)).collect(),
+            dynamics: model.vehicles.iter().map(|v| Dynamics::new(&v.tree)).collect(),
+            frames: vec![Frame::identity(); bodies],
+            frames_start: vec![Frame::identity(); bodies],
+            detector: Detector::new(&model.scene),
+            points: Vec::new(),
+            reach: vec![0.0; bodies],
+            touches: Vec::new(),
+            external: vec![Wrench::default(); bodies],
+            bias: vec![Wrench::default(); bodies],
+            contact: vec![Wrench::default(); bodies],
+            extra: vec![SpatialMatrix::default(); bodies],
+            dvel: vec![Twist::default(); bodies],
+            base_start: vec![Twist::default(); model.vehicles.len()],
+            q_start: vec![0.0; model.nq()],
+            base_gain: vec![Twist::default(); model.vehicles.len()],
+            v_gain: vec![0.0; nv],
+            v_mid: vec![0.0; nv],
+            tau: vec![0.0; nv],
+            zero: vec![0.0; nv],
+            displacement: vec![0.0; nv],
+            coordinate_points: vec![point; nv],
+            coordinate_forces: vec![CoordinateForce::default(); nv],
+            coordinate_lines: vec![(0.0, 0.0); nv],
+            islands: crate::solve::Islands::new(model),
+            memories: Vec::new(),
+            rk: crate::rk4::Stages::new(model),
+            backup: State::new(model),
+        }
+    }
+
+    /// Frames, screws and inertias at the state's poses.
+    pub fn update_positions(&mut self, model: &Model, state: &State) {
+        for (i, vehicle) in model.vehicles.iter().enumerate() {
+            self.kin[i].update_positions(&vehicle.tree, &state.bases[i], &state.q[vehicle.q_range()]);
+            for body in 0..vehicle.tree.bodies.len() {
+                self.frames[vehicle.body0 + body] = self.kin[i].frame(body);
+            }
+        }
+    }
+
+    /// Twists of all bodies from the state's momentum and joint rates.
+    pub fn update_velocities(&mut self, model: &Model, state: &State) {
+        for (i, vehicle) in model.vehicles.iter().enumerate() {
+            let kin = &mut self.kin[i];
+            kin.update_velocities(&vehicle.tree, &Twist::default(), &state.v[vehicle.v_range()]);
+            let base = calc_base_twist(vehicle, kin, &state.momentum[i]);
+            for twist in &mut kin.vel {
+                *twist += base;
+            }
+        }
+    }
+
+    /// Twist of a global body about the point at `point` (W), W axes; zero for the world.
+    #[inline]
+    pub fn vel_at(&self, model: &Model, body: usize, point: &Vec3) -> Vec3 {
+        let Some(&(vehicle, local)) = model.owners.get(body) else { return Vec3::zeros() };
+        let kin = &self.kin[vehicle];
+        kin.vel[local].at(&(point - kin.anchor))
+    }
+}
+
+/// Base twist (about the anchor) of a vehicle whose kinematics hold the twists with the base held.
+fn calc_base_twist(vehicle: &Vehicle, kin: &Kinematics, momentum: &Wrench) -> Twist {
+    if vehicle.base == Base::Fixed {
+        return Twist::default();
+    }
+    let locked = calc_locked_inertia(kin);
+    let about_anchor = Wrench::new(momentum.moment - kin.anchor.cross(&momentum.force), momentum.force);
+    let relative = if vehicle.tree.nv == 0 { Wrench::default() } else { calc_momentum(kin) };
+    let h = about_anchor - relative;
+    match vehicle.base {
+        Base::Free => locked.twist_of(&h).unwrap_or(Twist::new(Vec3::repeat(f64::NAN), Vec3::repeat(f64::NAN))),
+        _ => solve_masked(&SpatialMatrix::from(&locked), &h, &vehicle.base.mask()),
+    }
+}
+
+fn solve_masked(locked: &SpatialMatrix, h: &Wrench, mask: &[bool; 6]) -> Twist {
+    let mut a = nalgebra::Matrix6::<f64>::identity();
+    let mut b = nalgebra::Vector6::<f64>::zeros();
+    for i in (0..6).filter(|i| mask[*i]) {
+        b[i] = if i < 3 { h.moment[i] } else { h.force[i - 3] };
+        for j in (0..6).filter(|j| mask[*j]) {
+            a[(i, j)] = match (i < 3, j < 3) {
+                (true, true) => locked.ma[(i, j)],
+                (true, false) => locked.ml[(i, j - 3)],
+                (false, true) => locked.fa[(i - 3, j)],
+                (false, false) => locked.fl[(i - 3, j - 3)],
+            };
+        }
+    }
+    let x = a.cholesky().map_or(nalgebra::Vector6::repeat(f64::NAN), |c| c.solve(&b));
+    Twist::new(x.fixed_rows::<3>(0).into_owned(), x.fixed_rows::<3>(3).into_owned())
+}
+
+/// Momentum (about W's origin, in the slots that the base's guide leaves free) of a vehicle that moves as `kin` says.
+pub(crate) fn calc_world_momentum(vehicle: &Vehicle, kin: &Kinematics) -> Wrench {
+    world_wrench(vehicle, &kin.anchor, &calc_momentum(kin))
+}
+
+/// A wrench (or momentum) about the anchor, as it enters the vehicle's momentum about W's origin.
+pub(crate) fn world_wrench(vehicle: &Vehicle, anchor: &Vec3, about_anchor: &Wrench) -> Wrench {
+    let mask = vehicle.base.mask();
+    let free = |v: &Vec3, at: usize| Vec3::from_fn(|i, _| if mask[at + i] { v[i] } else { 0.0 });
+    let force = free(&about_anchor.force, 3);
+    Wrench::new(free(&(about_anchor.moment + anchor.cross(&force)), 0), force)
+}

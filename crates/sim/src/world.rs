@@ -1,0 +1,183 @@
+//! A model and its state, advancing.
+
+use crate::error::StepError;
+use crate::model::{Integrator, Model};
+use crate::state::State;
+use crate::step::{self, Scheme};
+use crate::workspace::{Workspace, calc_world_momentum};
+use crate::{Command, rk4};
+use multibody::Kinematics;
+use spatial::{Frame, Twist, Vec3, Wrench};
+use std::sync::Arc;
+
+/// A world that advances step by step.
+///
+/// After [`World::state_mut`] the next call sees the state as it was left; a clone of [`World::state`] is a snapshot,
+/// and a world that continues from it repeats the same bits.
+#[derive(Debug)]
+pub struct World {
+    model: Arc<Model>,
+    state: State,
+    ws: Workspace,
+    is_fresh: bool,
+}
+
+/// A touching point, as the last step left it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TouchReport {
+    /// The scene's pair.
+    pub pair: usize,
+    /// Identity within the pair.
+    pub feature: u64,
+    /// The contact point in W, m.
+    pub point_w: Vec3,
+    /// From A to B.
+    pub normal_w: Vec3,
+    /// Force on B, N.
+    pub force_w: Vec3,
+    /// Normal part of the law's force, N.
+    pub normal_force: f64,
+    /// Gap at the step's start, m; negative: penetration.
+    pub gap: f64,
+    /// Bristle deflection, m.
+    pub deflection: f64,
+    /// Whether the bristle sticks.
+    pub sticks: bool,
+}
+
+/// Speeds (m/s) beyond which a run counts as diverged.
+const MAX_SPEED: f64 = 1e6;
+
+impl World {
+    /// A world at a state.
+    pub fn new(model: Arc<Model>, state: State) -> Self {
+        let ws = Workspace::new(&model);
+        let mut world = Self { model, state, ws, is_fresh: false };
+        world.refresh();
+        world
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    /// The state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The state, to be changed.
+    pub fn state_mut(&mut self) -> &mut State {
+        self.is_fresh = false;
+        &mut self.state
+    }
+
+    /// The commands that act from now on.
+    pub fn commands_mut(&mut self) -> &mut [Command] {
+        &mut self.state.commands
+    }
+
+    /// Commands and the controller's memory, to be changed by a controller that has seen the world.
+    pub fn control_mut(&mut self) -> (&mut [Command], &mut Vec<f64>) {
+        (&mut self.state.commands, &mut self.state.controller)
+    }
+
+    /// Brings kinematics and twists up to a state that was changed.
+    pub fn refresh(&mut self) {
+        if !self.is_fresh {
+            self.ws.update_positions(&self.model, &self.state);
+            self.ws.update_velocities(&self.model, &self.state);
+            self.is_fresh = true;
+        }
+    }
+
+    /// Sets base twists (about each base's origin, W axes) at the present poses and rates: writes the momentum.
+    pub fn set_base_twists(&mut self, twists: &[Twist]) {
+        self.ws.update_positions(&self.model, &self.state);
+        for (i, vehicle) in self.model.vehicles.iter().enumerate() {
+            let kin = &mut self.ws.kin[i];
+            kin.update_velocities(&vehicle.tree, &twists[i], &self.state.v[vehicle.v_range()]);
+            self.state.momentum[i] = calc_world_momentum(vehicle, kin);
+        }
+        self.is_fresh = false;
+        self.refresh();
+    }
+
+    /// Advances by one step.
+    pub fn advance(&mut self) -> Result<(), StepError> {
+        self.refresh();
+        self.ws.backup.copy_from(&self.state);
+        let (model, state, ws) = (&*self.model, &mut self.state, &mut self.ws);
+        match model.integrator {
+            Integrator::ImplicitEuler => step::step(model, state, ws, Scheme::ImplicitEuler),
+            Integrator::ImplicitMidpoint => step::step(model, state, ws, Scheme::ImplicitMidpoint),
+            Integrator::SemiImplicitEuler => step::step(model, state, ws, Scheme::SemiImplicitEuler),
+            Integrator::RungeKutta4 => rk4::step(model, state, ws),
+        }
+        self.check_finite()
+    }
+
+    fn check_finite(&mut self) -> Result<(), StepError> {
+        for (i, vehicle) in self.model.vehicles.iter().enumerate() {
+            for (local, twist) in self.ws.kin[i].vel.iter().enumerate() {
+                let size = twist.lin.norm() + twist.ang.norm();
+                if size.is_nan() || size > MAX_SPEED {
+                    let time = self.state.time;
+                    let body = self.model.body_name(vehicle.body0 + local);
+                    let quantity = format!("speed {size:.3e}");
+                    self.state.copy_from(&self.ws.backup);
+                    self.is_fresh = false;
+                    self.refresh();
+                    return Err(StepError::Diverged { time, body, quantity, last_good: self.state.time });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Kinematics of a vehicle at the present state.
+    pub fn kinematics(&self, vehicle: usize) -> &Kinematics {
+        &self.ws.kin[vehicle]
+    }
+
+    /// Frame of a global body in W.
+    pub fn frame(&self, body: usize) -> Frame {
+        self.ws.frames[body]
+    }
+
+    /// Frame of a vehicle's link in W.
+    pub fn link_frame(&self, vehicle: usize, link: usize) -> Frame {
+        self.ws.kin[vehicle].link_frame(&self.model.vehicles[vehicle].tree, link)
+    }
+
+    /// Twist of a vehicle's link about its own origin, W axes.
+    pub fn link_twist(&self, vehicle: usize, link: usize) -> Twist {
+        self.ws.kin[vehicle].link_twist(&self.model.vehicles[vehicle].tree, link)
+    }
+
+    /// Effort that acted on a coordinate in the last step, N·m or N (actuators and passive laws).
+    pub fn effort(&self, coordinate: usize) -> f64 {
+        self.ws.coordinate_forces[coordinate].effort
+    }
+
+    /// External wrench on a global body in the last step, about its vehicle's anchor, W axes.
+    pub fn external_wrench(&self, body: usize) -> Wrench {
+        self.ws.external[body]
+    }
+
+    /// The points that touched in the last step.
+    pub fn touches(&self) -> impl Iterator<Item = TouchReport> + '_ {
+        self.ws.touches.iter().map(|t| TouchReport {
+            pair: t.pair as usize,
+            feature: t.feature,
+            point_w: t.point,
+            normal_w: t.normal,
+            force_w: t.out.force,
+            normal_force: t.out.normal_force,
+            gap: t.gap,
+            deflection: t.out.s.norm(),
+            sticks: t.out.sticks,
+        })
+    }
+}
