@@ -78,8 +78,8 @@ impl World {
         &mut self.state.commands
     }
 
-    /// Commands and the controller's memory, to be changed by a controller that has seen the world.
-    pub fn control_mut(&mut self) -> (&mut [Command], &mut Vec<f64>) {
+    /// Commands and the controller's memory; neither changes where anything is.
+    pub(crate) fn state_parts(&mut self) -> (&mut Vec<Command>, &mut Vec<f64>) {
         (&mut self.state.commands, &mut self.state.controller)
     }
 
