@@ -107,21 +107,22 @@ impl Kinematics {
         for (k, column) in columns.iter_mut().take(3).enumerate() {
             column.lin = unit(k).cross(&(vel_p - vel_b));
         }
-        self.for_each_column(tree, body, |parent, screw, v_index| {
-            let rate = self.vel[parent].cross_motion(screw);
+        self.for_each_column(tree, body, |child, screw, v_index| {
+            // A screw is fixed in its child; with the parent's twist J̇ v would be the same, but not J̇ of a floating joint.
+            let rate = self.vel[child].cross_motion(screw);
             columns[6 + v_index] += Twist::new(rate.ang, rate.at(&r) + screw.ang.cross(&vel_p));
         });
     }
 
-    /// Visits the screws that move `body`, from the tip to the base: (parent body, screw, index into v).
+    /// Visits the screws that move `body`, from the tip to the base: (child body, screw, index into v).
     fn for_each_column(&self, tree: &Tree, body: usize, mut visit: impl FnMut(usize, &Twist, usize)) {
         let mut at = body;
         while at != 0 {
-            let (joint, parent) = (&tree.joints[at - 1], tree.bodies[at].parent);
+            let joint = &tree.joints[at - 1];
             for k in 0..joint.width {
-                visit(parent, &self.screws[joint.column + k], joint.v_index + k);
+                visit(at, &self.screws[joint.column + k], joint.v_index + k);
             }
-            at = parent;
+            at = tree.bodies[at].parent;
         }
     }
 }
