@@ -1,1 +1,21 @@
 //! The scenario file, strategies, success criteria and metrics.
+//!
+//! [`load`] reads a scenario file, applies `--set` overrides and checks everything at once; [`Scenario`] is the result.
+
+mod document;
+mod error;
+mod glob;
+mod load;
+mod overrides;
+mod schema;
+pub mod spec;
+mod spelling;
+mod starter;
+
+pub use document::Source;
+pub use error::{Place, Problem, ScenarioError, ScenarioErrors};
+pub use glob::{glob_matches, is_glob};
+pub use load::{load, parse, to_toml};
+pub use schema::json_schema;
+pub use spec::Scenario;
+pub use starter::starter;

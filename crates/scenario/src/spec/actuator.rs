@@ -1,0 +1,235 @@
+//! Actuators, which commands move, and drives, which move by themselves.
+
+use super::pose::PoseSpec;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use spatial::Vec3;
+
+/// A motor, thruster or wheel, commanded by its name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Actuator {
+    /// Unique name; commands and places (`actuator:name`) use it.
+    #[schemars(extend("x-name" = true))]
+    pub name: String,
+    /// What it is and where it acts.
+    #[serde(flatten)]
+    pub kind: ActuatorKind,
+}
+
+/// What an actuator is and where it acts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum ActuatorKind {
+    /// The command is the joint's torque, N·m, or force, N.
+    #[schemars(extend("x-at-most-one" = [["limit_n_m", "limit_n"]]))]
+    JointTorque {
+        /// The joint, as `vehicle/joint`.
+        #[schemars(extend("x-refers" = "vehicle/part"))]
+        joint: String,
+        /// Largest torque, N·m; the URDF's effort limit where absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        limit_n_m: Option<f64>,
+        /// Largest force of a prismatic joint, N; the URDF's effort limit where absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        limit_n: Option<f64>,
+    },
+    /// A position and rate loop: τ = k (q_cmd − q) + d (q̇_cmd − q̇), within the limit.
+    JointDrive(JointDrive),
+    /// The command is the thrust, N, between zero and `max_force_n`.
+    Thruster {
+        /// Link it is fixed to, as `vehicle/link`.
+        #[schemars(extend("x-refers" = "vehicle/part"))]
+        link: String,
+        /// Where it acts, in link axes, m.
+        position_m: [f64; 3],
+        /// Direction of the force on the vehicle (against the plume), in link axes; need not be a unit vector.
+        #[schemars(extend("x-nonzero" = true))]
+        direction: [f64; 3],
+        /// Largest thrust, N.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        max_force_n: f64,
+    },
+    /// The command is the motor's torque on the wheel, N·m; the vehicle feels its opposite.
+    ReactionWheel {
+        /// Link it is fixed to, as `vehicle/link`.
+        #[schemars(extend("x-refers" = "vehicle/part"))]
+        link: String,
+        /// Spin axis in link axes; need not be a unit vector.
+        #[schemars(extend("x-nonzero" = true))]
+        axis: [f64; 3],
+        /// Inertia of the rotor about its axis, kg·m².
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        inertia_kg_m2: f64,
+        /// Largest torque of the motor, N·m.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        torque_limit_n_m: f64,
+        /// Speed at which the motor stops pushing, rad/s.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        speed_limit_rad_per_s: f64,
+        /// Speed of the rotor relative to the link at t = 0, rad/s.
+        #[serde(default)]
+        speed_rad_per_s: f64,
+    },
+}
+
+/// A position and rate loop on one joint or on several with the same gains.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+#[schemars(extend(
+    "x-exactly-one" = [["joint", "joints"], ["stiffness_n_m_per_rad", "stiffness_n_per_m"]],
+    "x-at-most-one" = [["damping_n_m_s_per_rad", "damping_n_s_per_m"], ["limit_n_m", "limit_n"]],
+))]
+pub struct JointDrive {
+    /// The joint, as `vehicle/joint`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-refers" = "vehicle/part"))]
+    pub joint: Option<String>,
+    /// Several joints, as `vehicle/joint` or globs; one drive each, named `name/joint`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(min = 1), extend("x-refers" = "pattern"))]
+    pub joints: Vec<String>,
+    /// Stiffness of revolute joints, N·m/rad; zero for a pure rate loop.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub stiffness_n_m_per_rad: Option<f64>,
+    /// Stiffness of prismatic joints, N/m; zero for a pure rate loop.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub stiffness_n_per_m: Option<f64>,
+    /// Damping of revolute joints, N·m·s/rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub damping_n_m_s_per_rad: Option<f64>,
+    /// Damping of prismatic joints, N·s/m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub damping_n_s_per_m: Option<f64>,
+    /// Largest torque, N·m; the URDF's effort limit where absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub limit_n_m: Option<f64>,
+    /// Largest force of prismatic joints, N; the URDF's effort limit where absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub limit_n: Option<f64>,
+}
+
+impl JointDrive {
+    /// The joints or patterns it names.
+    pub fn joint_patterns(&self) -> impl Iterator<Item = &str> {
+        self.joint.iter().chain(&self.joints).map(String::as_str)
+    }
+
+    /// Stiffness, N·m/rad or N/m.
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness_n_m_per_rad.or(self.stiffness_n_per_m).unwrap_or(0.0)
+    }
+
+    /// Damping, N·m·s/rad or N·s/m.
+    pub fn damping(&self) -> f64 {
+        self.damping_n_m_s_per_rad.or(self.damping_n_s_per_m).unwrap_or(0.0)
+    }
+
+    /// Largest effort, N·m or N, where the file gives one.
+    pub fn limit(&self) -> Option<f64> {
+        self.limit_n_m.or(self.limit_n)
+    }
+
+    /// Whether its gains are those of prismatic joints.
+    pub fn is_linear(&self) -> bool {
+        self.stiffness_n_per_m.is_some()
+    }
+}
+
+/// A unit vector along a direction that the file gives by any length; x̂ for zero, which the check refuses.
+pub(super) fn unit(direction: &[f64; 3]) -> Vec3 {
+    Vec3::from(*direction).try_normalize(0.0).unwrap_or_else(Vec3::x)
+}
+
+impl ActuatorKind {
+    /// Unit vector of a thruster's force or a wheel's axis, in link axes.
+    pub fn axis(&self) -> Option<Vec3> {
+        match self {
+            Self::Thruster { direction: along, .. } | Self::ReactionWheel { axis: along, .. } => Some(unit(along)),
+            Self::JointTorque { .. } | Self::JointDrive(_) => None,
+        }
+    }
+}
+
+/// A prescribed motion: the joint, or the base, is where the formula says, whatever the forces.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(extend("x-exactly-one" = [["joint", "vehicle"]]))]
+pub struct Drive {
+    /// Unique name.
+    #[schemars(extend("x-name" = true))]
+    pub name: String,
+    /// The driven joint, as `vehicle/joint`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-refers" = "vehicle/part"))]
+    pub joint: Option<String>,
+    /// The vehicle whose base is driven: along the z axis of `pose` by a displacement, about it by an angle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-refers" = "vehicle"))]
+    pub vehicle: Option<String>,
+    /// Frame of a driven base's motion, in W; identity where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pose: Option<PoseSpec>,
+    /// The motion.
+    #[serde(flatten)]
+    pub motion: DriveMotion,
+}
+
+/// A motion as a function of time; keys in deg are angles, in m displacements.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum DriveMotion {
+    /// A · sin(2π f t + φ).
+    #[schemars(extend("x-exactly-one" = [["amplitude_deg", "amplitude_m"]]))]
+    Sine {
+        /// Amplitude of an angle, deg.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        amplitude_deg: Option<f64>,
+        /// Amplitude of a displacement, m.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        amplitude_m: Option<f64>,
+        /// Frequency f, Hz.
+        #[schemars(range(min = 0.0))]
+        frequency_hz: f64,
+        /// Phase φ, deg.
+        #[serde(default)]
+        phase_deg: f64,
+    },
+    /// Constant rate from t = 0.
+    #[schemars(extend("x-exactly-one" = [["velocity_deg_per_s", "velocity_m_per_s"]]))]
+    Ramp {
+        /// Rate of an angle, deg/s.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        velocity_deg_per_s: Option<f64>,
+        /// Rate of a displacement, m/s.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        velocity_m_per_s: Option<f64>,
+    },
+    /// Piecewise cubic through points, [t in s, value].
+    #[schemars(extend("x-exactly-one" = [["points_s_deg", "points_s_m"]]))]
+    Points {
+        /// Points of an angle, [s, deg].
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(min = 1), extend("x-ascending" = true))]
+        points_s_deg: Vec<[f64; 2]>,
+        /// Points of a displacement, [s, m].
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(min = 1), extend("x-ascending" = true))]
+        points_s_m: Vec<[f64; 2]>,
+    },
+    /// As a channel of a recording moved.
+    Recording {
+        /// The recording, relative to the scenario file.
+        #[schemars(length(min = 1))]
+        file: String,
+        /// The channel that holds the position, rad or m.
+        #[schemars(length(min = 1))]
+        channel: String,
+    },
+}

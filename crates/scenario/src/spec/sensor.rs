@@ -1,0 +1,123 @@
+//! Sensors: what is measured, where, how often, and with which errors.
+//!
+//! reading(t) = true value(t − delay) + bias + white noise of the given standard deviation, drawn at each sample.
+
+use super::pose::PoseSpec;
+use super::vehicle::world;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A sensor, read by its name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Sensor {
+    /// Unique name; channels and places (`sensor:name`) use it.
+    #[schemars(extend("x-name" = true))]
+    pub name: String,
+    /// Samples per second.
+    #[serde(default = "default_rate")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub rate_hz: f64,
+    /// Age of a reading when it arrives, s.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub delay_s: f64,
+    /// What it measures, and its errors.
+    #[serde(flatten)]
+    pub kind: SensorKind,
+}
+
+/// Sampling rate of a sensor that says none, Hz.
+fn default_rate() -> f64 {
+    100.0
+}
+
+/// What a sensor measures, and its errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum SensorKind {
+    /// Position of a joint, or of several.
+    JointEncoder {
+        /// The joint as `vehicle/joint`, or a glob.
+        #[schemars(extend("x-refers" = "pattern"))]
+        joint: String,
+        /// Noise of an angle, standard deviation, deg.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        noise_deg: f64,
+        /// Noise of a displacement, standard deviation, m.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        noise_m: f64,
+        /// Step of the encoder's scale, deg; zero for a continuous one.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        resolution_deg: f64,
+        /// Added to the angle, deg.
+        #[serde(default)]
+        bias_deg: f64,
+    },
+    /// Angular velocity and specific force of a link, in the sensor's axes.
+    Imu {
+        /// Link it is fixed to, as `vehicle/link`.
+        #[schemars(extend("x-refers" = "vehicle/part"))]
+        link: String,
+        /// Pose of the sensor in the link.
+        #[serde(default)]
+        pose: PoseSpec,
+        /// Noise of the gyro, standard deviation, rad/s.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        gyro_noise_rad_per_s: f64,
+        /// Added to the gyro's reading, rad/s.
+        #[serde(default)]
+        gyro_bias_rad_per_s: [f64; 3],
+        /// Noise of the accelerometer, standard deviation, m/s².
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        accelerometer_noise_m_per_s2: f64,
+        /// Added to the accelerometer's reading, m/s².
+        #[serde(default)]
+        accelerometer_bias_m_per_s2: [f64; 3],
+    },
+    /// Pose of a link relative to another, as a camera or a motion-capture system gives it.
+    Pose {
+        /// Link that is observed, as `vehicle/link`.
+        #[schemars(extend("x-refers" = "vehicle/part"))]
+        link: String,
+        /// What it is observed from: "world" or a `vehicle/link`.
+        #[serde(default = "world")]
+        #[schemars(extend("x-refers" = "vehicle/part"))]
+        relative_to: String,
+        /// Noise of the position, standard deviation on each axis, m.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        position_noise_m: f64,
+        /// Added to the position, m.
+        #[serde(default)]
+        position_bias_m: [f64; 3],
+        /// Noise of the attitude, standard deviation about each axis, deg.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        attitude_noise_deg: f64,
+    },
+    /// Force and moment that pass through a joint (fixed ones too), on the child, in the child link's axes.
+    ForceTorque {
+        /// The joint, as `vehicle/joint`.
+        #[schemars(extend("x-refers" = "vehicle/part"))]
+        joint: String,
+        /// Noise of the force, standard deviation on each axis, N.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        force_noise_n: f64,
+        /// Added to the force, N.
+        #[serde(default)]
+        force_bias_n: [f64; 3],
+        /// Noise of the moment, standard deviation about each axis, N·m.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        torque_noise_n_m: f64,
+        /// Added to the moment, N·m.
+        #[serde(default)]
+        torque_bias_n_m: [f64; 3],
+    },
+}
