@@ -2,7 +2,7 @@
 """Fixtures that hold softdock's multibody algorithms to those of Pinocchio.
 
     python -m venv venv && venv/bin/pip install pin==4.1.0 example-robot-data==6.0.0 pybullet==3.2.7
-    venv/bin/python tests/pinocchio/generate.py                    # all of it, about two minutes
+    venv/bin/python tests/pinocchio/generate.py                    # all of it, about half a minute
     venv/bin/python tests/pinocchio/generate.py servicer           # after a change of robots/servicer/servicer.urdf
     venv/bin/python tests/pinocchio/generate.py --dump trees tree-03 free 17    # every quantity of one state, to read
 

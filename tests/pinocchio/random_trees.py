@@ -18,7 +18,7 @@ ONE_FREEDOM = ("revolute", "continuous", "prismatic")
 
 def text(values):
     """Four digits each, blanks between."""
-    return " ".join(f"{v:.4f}".rstrip("0").rstrip(".").replace("-0 ", "0 ") for v in values)
+    return " ".join(f"{v:.4f}".rstrip("0").rstrip(".") for v in values)
 
 
 def rotation(rpy):

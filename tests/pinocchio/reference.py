@@ -123,7 +123,7 @@ class Robot:
             return "floating"
         if "Planar" in short:
             return "planar"
-        return "sliding" if short.startswith(("JointModelP",)) else "turning"
+        return "sliding" if short.startswith("JointModelP") else "turning"
 
     def calc_gather(self):
         """G with an identity base block: full joint rates from the leading ones."""
