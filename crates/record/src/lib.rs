@@ -1,1 +1,34 @@
-//! Channels, recordings and their sinks: Parquet, CSV, Rerun.
+//! Channels, recordings and their sinks: Parquet, CSV, plots and Rerun.
+//!
+//! **run → [`Log`] → files.** An observer fills a [`Log`] at the logging rate; the sinks write it when the run is over:
+//!
+//! | file | by | for |
+//! | --- | --- | --- |
+//! | `signals.parquet` | [`write_parquet`] | numbers: every channel, `f64`, units in the header |
+//! | `signals.csv` | [`write_csv`] | the same for spreadsheets |
+//! | `signals.svg` | [`plot::plot_svg`] | eyes without a viewer |
+//! | `run.rrd` | `rerun_sink::write_rrd` (feature `rerun`) | eyes with the Rerun viewer |
+//! | `summary.json` | [`OutputFolder::finish`] | outcome, metrics; its presence says that the folder is whole |
+//!
+//! `read_parquet` and `read_csv` read recordings back, from softdock or from a rig.
+
+mod channel;
+mod csv_file;
+mod error;
+mod folder;
+mod log;
+mod mesh;
+mod parquet_file;
+pub mod plot;
+#[cfg(feature = "rerun")]
+mod rerun_sink;
+mod scene;
+
+pub use channel::{Axes, Channel, ChannelSpec, Plot, Signals, axes_of};
+pub use csv_file::{encode_csv, parse_csv, read_csv, write_csv};
+pub use error::RecordError;
+pub use folder::{OutputFolder, SUMMARY_FORMAT, write_file};
+pub use log::{ContactSample, Event, EventKind, Log, Meta, Sample};
+pub use mesh::{TriangleMesh, triangulate};
+pub use parquet_file::{SIGNALS_FORMAT, encode_parquet, read_parquet, write_parquet};
+pub use scene::{Scene, SceneLink, SceneVehicle, Trail};
