@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// So many faults are told at once; a file with more is not a scenario gone wrong, but something else.
+pub(crate) const MOST_ERRORS: usize = 1000;
+
 /// Where in the input something is wrong.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Place {
@@ -135,6 +138,9 @@ pub enum Problem {
         /// Where it ends, and what is there instead.
         reason: String,
     },
+    /// More faults than anyone reads.
+    #[error("has more than {MOST_ERRORS} faults, of which the first are listed; is it a scenario?")]
+    TooMany,
     /// Well-formed, and yet the model cannot be built from it.
     #[error("`{key}`: {reason}")]
     Unbuildable {

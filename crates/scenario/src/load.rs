@@ -1,7 +1,7 @@
 //! File and overrides → checked [`Scenario`]; and back.
 
 use crate::document::{Node, Origin, Source, read_document};
-use crate::error::{Place, Problem, ScenarioError, ScenarioErrors};
+use crate::error::{MOST_ERRORS, Place, Problem, ScenarioError, ScenarioErrors};
 use crate::overrides;
 use crate::schema::check;
 use crate::spec::Scenario;
@@ -40,17 +40,27 @@ pub fn parse(text: &str, file_name: &str, overrides: &[String]) -> Result<Scenar
             place: source.place(Origin::File(fault.at)),
             problem: Problem::Syntax { what: fault.what },
         };
-        return Err(ScenarioErrors::new(faults.into_iter().map(error).collect()));
+        return Err(all_of(faults.into_iter().take(MOST_ERRORS + 1).map(error).collect(), &source));
     }
     let mut errors = apply_all(&mut root, &source);
     errors.extend(check(&root, &source));
     if !errors.is_empty() {
-        return Err(ScenarioErrors::new(errors));
+        return Err(all_of(errors, &source));
     }
     let mut scenario = deserialise(&root, &source)?;
     source.root = Some(Arc::new(root));
     scenario.source = source;
     Ok(scenario)
+}
+
+/// The errors in order; of very many the first, and that there are more.
+fn all_of(errors: Vec<ScenarioError>, source: &Source) -> ScenarioErrors {
+    let mut all = ScenarioErrors::new(errors);
+    if all.errors.len() > MOST_ERRORS {
+        all.errors.truncate(MOST_ERRORS);
+        all.errors.push(ScenarioError { place: source.whole(), problem: Problem::TooMany });
+    }
+    all
 }
 
 /// Applies the overrides one after the other; one that fails changes nothing.

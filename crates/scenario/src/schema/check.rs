@@ -6,7 +6,7 @@ use super::{
     rules, scenario_schema, table_schema, takes,
 };
 use crate::document::{Entry, Node, Origin, Source, Table, Value as Tree, shortened};
-use crate::error::{Problem, ScenarioError};
+use crate::error::{MOST_ERRORS, Problem, ScenarioError};
 use crate::spelling::{hint_for_key, hint_for_name, listed};
 use serde_json::Value;
 use std::collections::HashMap;
@@ -29,6 +29,9 @@ pub(super) struct Checker<'a> {
 impl Checker<'_> {
     /// Records a complaint.
     pub(super) fn complain(&mut self, origin: Origin, problem: Problem) {
+        if self.errors.len() > MOST_ERRORS {
+            return; // parse() says that there are more
+        }
         self.errors.push(ScenarioError { place: self.source.place(origin), problem });
     }
 
