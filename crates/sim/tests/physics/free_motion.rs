@@ -1,9 +1,8 @@
 //! A free-floating arm without any force: momentum to round-off, energy and positions to the integrator's order.
-mod support;
 
+use crate::support::{ALL, Setup, arm7, free_world, run};
 use sim::{Energy, Environment, Integrator, MomentumAudit, World};
 use spatial::{Twist, Vec3};
-use support::{ALL, Setup, arm7, free_world, run};
 
 fn arm(integrator: Integrator, step: f64) -> World {
     let mut world = free_world(arm7(), &Setup { integrator, step, environment: Environment::DeepSpace });

@@ -1,8 +1,8 @@
 //! Blocks on planes: creep, sliding, pulling.
-mod support;
 
+use crate::support::scenes::block_on_slope;
+use crate::support::{Setup, bristle, linear, run};
 use sim::{Environment, Integrator, PairLaw, World};
-use support::{Setup, block_on_slope, bristle, linear, run};
 
 const MU: f64 = 0.4;
 

@@ -1,21 +1,17 @@
 //! Small worlds for the tests.
-#![allow(dead_code)]
+
+pub(crate) mod elliptic;
+pub(crate) mod scenes;
 
 use contact::{Normal, NormalLaw, Shape};
 use friction::Bristle;
 use multibody::{Inertial, JointDescription, JointKind, LinkDescription, RobotDescription, Tree};
-use sim::{
-    Base, Environment, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, State, VehicleSpec, World,
-};
-use spatial::{Mat3, Pose, Vec3};
+use sim::{Base, Environment, Integrator, Model, ModelSpec, ShapeSpec, State, VehicleSpec, World};
+use spatial::{Mat3, Pose, Twist, Vec3};
 use std::sync::Arc;
 
-pub(crate) const ALL: [Integrator; 4] = [
-    Integrator::ImplicitEuler,
-    Integrator::ImplicitMidpoint,
-    Integrator::SemiImplicitEuler,
-    Integrator::RungeKutta4,
-];
+pub(crate) const ALL: [Integrator; 4] =
+    [Integrator::ImplicitEuler, Integrator::ImplicitMidpoint, Integrator::SemiImplicitEuler, Integrator::RungeKutta4];
 
 pub(crate) fn link(name: &str, mass: f64, com: Vec3, moments: Vec3) -> LinkDescription {
     LinkDescription {
@@ -80,11 +76,26 @@ pub(crate) fn arm7() -> Tree {
 }
 
 /// What varies between the small worlds.
-#[derive(Clone)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Setup {
     pub(crate) integrator: Integrator,
     pub(crate) step: f64,
     pub(crate) environment: Environment,
+}
+
+impl Setup {
+    /// 1 ms in deep space.
+    pub(crate) fn new(integrator: Integrator) -> Self {
+        Self { integrator, step: 1e-3, environment: Environment::DeepSpace }
+    }
+
+    pub(crate) fn step(self, step: f64) -> Self {
+        Self { step, ..self }
+    }
+
+    pub(crate) fn gravity(self, gravity: Vec3) -> Self {
+        Self { environment: Environment::Uniform { gravity }, ..self }
+    }
 }
 
 pub(crate) fn spec(vehicles: Vec<(Tree, Base)>, setup: &Setup) -> ModelSpec {
@@ -105,14 +116,23 @@ pub(crate) fn spec(vehicles: Vec<(Tree, Base)>, setup: &Setup) -> ModelSpec {
     }
 }
 
-pub(crate) fn free_world(tree: Tree, setup: &Setup) -> World {
-    let model = Arc::new(Model::build(spec(vec![(tree, Base::Free)], setup)).expect("the model is sound"));
+/// A world at the state where everything stands at the origin.
+pub(crate) fn world(spec: ModelSpec) -> World {
+    let model = Arc::new(Model::build(spec).expect("the model is sound"));
     let state = State::new(&model);
     World::new(model, state)
 }
 
+pub(crate) fn free_world(tree: Tree, setup: &Setup) -> World {
+    world(spec(vec![(tree, Base::Free)], setup))
+}
+
 pub(crate) fn linear(stiffness: f64, damping: f64) -> Normal {
     Normal::new(NormalLaw::SpringDamper { stiffness, damping })
+}
+
+pub(crate) fn hunt_crossley(stiffness: f64, exponent: f64, dissipation: f64) -> Normal {
+    Normal::new(NormalLaw::HuntCrossley { stiffness, exponent, dissipation })
 }
 
 pub(crate) fn bristle(mu: f64, stiffness: f64, damping: f64) -> Bristle {
@@ -123,21 +143,8 @@ pub(crate) fn shape(name: &str, vehicle: Option<usize>, shape: Shape) -> ShapeSp
     ShapeSpec { name: name.to_owned(), vehicle, link: 0, pose_ls: Pose::identity(), shape }
 }
 
-/// A block on the half-space z < 0, in a field that a slope of `angle` would give, resting at its equilibrium depth.
-pub(crate) fn block_on_slope(angle: f64, law: PairLaw, setup: &Setup) -> World {
-    let half = Vec3::new(0.1, 0.1, 0.05);
-    let gravity = 9.81 * Vec3::new(angle.sin(), 0.0, -angle.cos());
-    let setup = Setup { environment: Environment::Uniform { gravity }, ..setup.clone() };
-    let mut spec = spec(vec![(block(1.0, half), Base::Free)], &setup);
-    spec.shapes = vec![
-        shape("floor", None, Shape::HalfSpace),
-        shape("block", Some(0), Shape::Cuboid { half_extents: half }),
-    ];
-    spec.pairs = vec![([0, 1], law)];
-    let model = Arc::new(Model::build(spec).expect("the model is sound"));
-    let mut state = State::new(&model);
-    state.bases[0] = Pose::translation(0.0, 0.0, half.z - 1e-9);
-    World::new(model, state)
+pub(crate) fn twist(ang: [f64; 3], lin: [f64; 3]) -> Twist {
+    Twist::new(ang.into(), lin.into())
 }
 
 pub(crate) fn run(world: &mut World, steps: usize) {

@@ -1,0 +1,12 @@
+//! The simulation against closed forms, conservation laws and itself.
+//!
+//! `cargo test -p softdock-sim` runs all of it in a few minutes on two cores; a word after `--` picks a topic, as in
+//! `cargo test -p softdock-sim -- creep`. Tables that the convergence tests print stand in `tests/tables/`;
+//! `SOFTDOCK_BLESS=1 cargo test -p softdock-sim -- table` writes them anew.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+mod free_motion;
+mod friction;
+mod momentum;
+mod support;
+mod torque_free;

@@ -1,0 +1,170 @@
+//! Momentum: only what comes from outside may change it, for every integrator, with and without contact.
+//!
+//! The account is the sum over links ([`sim::MomentumAudit`]), never a conserved state.
+
+use crate::support::scenes::{box_hits_plate, gripper, gripper_spec, start_gripper};
+use crate::support::{ALL, Setup, arm7, block, free_world, run, spec, twist, world};
+use sim::{Actuator, ActuatorKind, Base, Command, Energy, Environment, MomentumAudit, World};
+use spatial::Vec3;
+
+/// What the issue asks for; rounding stays some four decades below it.
+const DRIFT: f64 = 1e-9;
+
+/// Runs `steps`, looking every `every`; `command` sets the commands before each look.
+fn audit(world: &mut World, steps: usize, every: usize, command: impl Fn(f64, &mut [Command])) -> MomentumAudit {
+    let mut audit = MomentumAudit::new(world);
+    for _ in 0..steps / every {
+        let t = world.state().time;
+        command(t, world.commands_mut());
+        run(world, every);
+        audit.update(world);
+    }
+    audit
+}
+
+fn idle(_: f64, _: &mut [Command]) {}
+
+fn report(name: &str, audit: &MomentumAudit) {
+    println!("{name}: linear {:.1e}, angular {:.1e}", audit.linear_drift, audit.angular_drift);
+    assert!(audit.linear_drift <= DRIFT && audit.angular_drift <= DRIFT);
+}
+
+/// The free-floating arm with a drive on every joint.
+fn driven_arm(setup: &Setup) -> World {
+    let mut spec = spec(vec![(arm7(), Base::Free)], setup);
+    spec.actuators = (0..7)
+        .map(|coordinate| {
+            let kind = ActuatorKind::JointDrive { coordinate, stiffness: 40.0, damping: 8.0, limit: 30.0 };
+            Actuator { name: format!("drive{coordinate}"), kind }
+        })
+        .collect();
+    let mut world = world(spec);
+    world.set_base_twists(&[twist([0.01, -0.02, 0.015], [0.002, 0.001, -0.003])]);
+    world
+}
+
+/// All joints swing, each with its own period of some tens of seconds.
+fn swing(t: f64, commands: &mut [Command]) {
+    for (i, command) in commands.iter_mut().enumerate() {
+        let (amplitude, rate) = (0.8 - 0.05 * i as f64, 0.2 + 0.07 * i as f64);
+        command.position = amplitude * (rate * t).sin();
+        command.velocity = amplitude * rate * (rate * t).cos();
+    }
+}
+
+#[test]
+fn arm_moving_on_a_free_base_for_1000_s_keeps_momentum() {
+    std::thread::scope(|scope| {
+        for integrator in ALL {
+            scope.spawn(move || {
+                let mut world = driven_arm(&Setup::new(integrator));
+                let audit = audit(&mut world, 1_000_000, 100, swing);
+                report(&format!("{integrator:?}, 1,000 s"), &audit);
+            });
+        }
+    });
+}
+
+#[test]
+fn box_that_strikes_a_plate_keeps_momentum() {
+    for integrator in ALL {
+        let mut world = box_hits_plate(&Setup::new(integrator));
+        let mut most = 0;
+        let mut audit = MomentumAudit::new(&world);
+        for _ in 0..2_000 {
+            run(&mut world, 1);
+            most = most.max(world.touches().filter(|t| t.normal_force > 0.0).count());
+            audit.update(&world);
+        }
+        report(&format!("{integrator:?}, impact"), &audit);
+        assert!(most >= 2, "several corners have touched at once: {most}");
+        assert!(world.state().momentum[1].force.z > 0.0, "the box has bounced");
+    }
+}
+
+#[test]
+fn gripper_holding_a_box_keeps_momentum() {
+    for integrator in ALL {
+        let mut world = gripper(&Setup::new(integrator));
+        let audit = audit(&mut world, 10_000, 10, idle);
+        report(&format!("{integrator:?}, grasp"), &audit);
+        assert_eq!(world.touches().filter(|t| t.sticks).count(), 8, "eight points hold the box by friction");
+    }
+}
+
+#[test]
+fn one_sided_force_of_a_micronewton_shows_in_the_audit() {
+    for integrator in ALL {
+        let mut spec = gripper_spec(&Setup::new(integrator));
+        spec.one_sided_force = Vec3::new(0.0, 1e-6, 0.0);
+        let mut world = world(spec);
+        start_gripper(&mut world);
+        run(&mut world, 1_000);
+        let audit = audit(&mut world, 1_000, 10, idle);
+        println!("{integrator:?}: linear {:.1e}, angular {:.1e}", audit.linear_drift, audit.angular_drift);
+        // Eight points, 1 s.
+        assert!((audit.absolute[0] / 8e-6 - 1.0).abs() < 1e-6, "{:e}", audit.absolute[0]);
+        assert!(audit.linear_drift > DRIFT && audit.angular_drift > DRIFT);
+    }
+}
+
+/// A thruster on the base, or wherever `position` is.
+fn jet(position: Vec3, direction: Vec3) -> Actuator {
+    let kind = ActuatorKind::Thruster { body: 0, position, direction, max_force: 5.0 };
+    Actuator { name: "jet".to_owned(), kind }
+}
+
+/// 3 N for 2 s, then as much as it has (5 N).
+fn burn(t: f64, commands: &mut [Command]) {
+    commands[0].effort = if t < 1.9999 { 3.0 } else { 9.0 };
+}
+
+#[test]
+fn thruster_on_a_turning_arm_is_booked_as_external() {
+    for integrator in ALL {
+        let mut spec = spec(vec![(arm7(), Base::Free)], &Setup::new(integrator));
+        spec.actuators = vec![jet(Vec3::new(0.4, 0.1, -0.2), Vec3::new(0.0, 0.6, 0.8))];
+        let mut world = world(spec);
+        world.state_mut().v.copy_from_slice(&[0.2, -0.1, 0.3, 0.1, -0.4, 0.2, 0.1]);
+        world.set_base_twists(&[twist([0.1, 0.05, -0.2], [0.0; 3])]);
+        let audit = audit(&mut world, 5_000, 10, burn);
+        report(&format!("{integrator:?}, thruster"), &audit);
+    }
+}
+
+#[test]
+fn thruster_through_the_centre_of_mass_gives_force_times_time_and_its_energy() {
+    for integrator in ALL {
+        let mut spec = spec(vec![(block(4.0, Vec3::new(0.1, 0.2, 0.3)), Base::Free)], &Setup::new(integrator));
+        spec.actuators = vec![jet(Vec3::zeros(), Vec3::y())];
+        let mut world = world(spec);
+        audit(&mut world, 5_000, 10, burn);
+        let speed = world.kinematics(0).vel[0].lin.y;
+        assert!((speed - (3.0 * 2.0 + 5.0 * 3.0) / 4.0).abs() < 1e-12, "{integrator:?}: {speed}");
+        let (kinetic, work) = (Energy::of(&world).kinetic, world.state().account.external_work);
+        assert!((work / kinetic - 1.0).abs() < 1e-12, "{integrator:?}: work {work} J, kinetic energy {kinetic} J");
+    }
+}
+
+#[test]
+fn gravity_and_tide_are_booked_as_external() {
+    let fields = [
+        Environment::Uniform { gravity: Vec3::new(0.3, -0.2, -1.6) },
+        Environment::Orbit { mean_motion: 1.13e-3, gravity_gradient: false },
+        Environment::Orbit { mean_motion: 1.13e-3, gravity_gradient: true },
+    ];
+    for integrator in ALL {
+        for environment in fields {
+            let mut world = free_world(arm7(), &Setup { environment, ..Setup::new(integrator) });
+            world.state_mut().bases[0].translation.vector = Vec3::new(30.0, -20.0, 10.0);
+            world.state_mut().v.copy_from_slice(&[0.2, -0.1, 0.3, 0.1, -0.4, 0.2, 0.1]);
+            let audit = audit(&mut world, 5_000, 10, idle);
+            report(&format!("{integrator:?}, {environment:?}"), &audit);
+            let gained = world.state().account.impulse.force;
+            if let Environment::Uniform { gravity } = environment {
+                let mass = world.model().vehicles[0].tree.mass();
+                assert!((gained - mass * 5.0 * gravity).norm() < 1e-9 * gained.norm());
+            }
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Scenes with contact that several topics look at.
+
+use super::{Setup, block, bristle, joint, linear, link, robot, shape, spec, twist, world};
+use contact::Shape;
+use multibody::{JointKind, Tree};
+use sim::{Actuator, ActuatorKind, Base, Command, ModelSpec, PairLaw, ShapeSpec, World};
+use spatial::{Pose, Rot, Vec3};
+
+/// Half the edges of the usual block, m.
+pub(crate) const BLOCK: [f64; 3] = [0.1, 0.1, 0.05];
+
+/// A block of 1 kg on the half-space z < 0, in a field that a slope of `angle` would give.
+pub(crate) fn block_on_slope(angle: f64, law: PairLaw, setup: &Setup) -> World {
+    let gravity = 9.81 * Vec3::new(angle.sin(), 0.0, -angle.cos());
+    let half = Vec3::from(BLOCK);
+    let mut spec = spec(vec![(block(1.0, half), Base::Free)], &setup.gravity(gravity));
+    spec.shapes =
+        vec![shape("floor", None, Shape::HalfSpace), shape("block", Some(0), Shape::Cuboid { half_extents: half })];
+    spec.pairs = vec![([0, 1], law)];
+    let mut world = world(spec);
+    world.state_mut().bases[0] = Pose::translation(0.0, 0.0, half.z - 1e-9);
+    world
+}
+
+/// A plate of 8 kg and a box of 2 kg that flies into it with a spin: several impacts, corners sliding and sticking.
+pub(crate) fn box_hits_plate_spec(setup: &Setup) -> ModelSpec {
+    let (plate, half) = (block(8.0, Vec3::new(0.4, 0.4, 0.05)), Vec3::new(0.1, 0.07, 0.05));
+    let mut spec = spec(vec![(plate, Base::Free), (block(2.0, half), Base::Free)], setup);
+    spec.shapes =
+        vec![shape("face", Some(0), Shape::HalfSpace), shape("box", Some(1), Shape::Cuboid { half_extents: half })];
+    spec.pairs = vec![([0, 1], PairLaw { normal: linear(1e4, 40.0), friction: Some(bristle(0.4, 1e4, 20.0)) })];
+    spec
+}
+
+/// The box just above the plate, tilted; both spin.
+pub(crate) fn start_box_hits_plate(world: &mut World) {
+    let tilt = Rot::from_scaled_axis(Vec3::new(0.04, -0.03, 0.4));
+    world.state_mut().bases[1] = Pose::from_parts(Vec3::new(0.05, 0.02, 0.06).into(), tilt);
+    world.set_base_twists(&[twist([0.1, -0.2, 0.05], [0.0, 0.01, 0.02]), twist([0.2, -0.3, -1.0], [0.2, 0.1, -0.4])]);
+}
+
+/// A free base with two fingers (half-spaces that slide on x) and a box of 2 kg between them: eight sticking points.
+///
+/// Actuators: one drive per finger; [`start_gripper`] closes them with about 20 N.
+pub(crate) fn gripper_spec(setup: &Setup) -> ModelSpec {
+    let half = Vec3::new(0.05, 0.04, 0.06);
+    let mut spec = spec(vec![(gripper_tree(), Base::Free), (block(2.0, half), Base::Free)], setup);
+    let box_shape = shape("box", Some(1), Shape::Cuboid { half_extents: half });
+    spec.shapes = vec![finger(1, 1.0), finger(2, -1.0), box_shape];
+    let law = PairLaw { normal: linear(5e4, 50.0), friction: Some(bristle(0.5, 5e4, 30.0)) };
+    spec.pairs = vec![([0, 2], law), ([1, 2], law)];
+    spec.actuators = (0..2).map(finger_drive).collect();
+    spec
+}
+
+fn gripper_tree() -> Tree {
+    let finger = |name| link(name, 0.5, Vec3::zeros(), Vec3::new(2e-3, 1.5e-3, 1e-3));
+    let base = link("base", 20.0, Vec3::new(0.0, 0.02, -0.1), Vec3::new(0.8, 0.7, 0.6));
+    let slide = |name, x: f64| joint(name, 0, Vec3::new(x, 0.0, 0.3), Vec3::x() * -x.signum(), JointKind::Prismatic);
+    robot(vec![base, finger("left"), finger("right")], vec![slide("slide_left", -0.08), slide("slide_right", 0.08)])
+}
+
+fn finger(link: usize, facing: f64) -> ShapeSpec {
+    let turn = Rot::from_scaled_axis(Vec3::y() * facing * std::f64::consts::FRAC_PI_2);
+    ShapeSpec {
+        link,
+        pose_ls: Pose::from_parts(Vec3::zeros().into(), turn),
+        ..shape(&format!("finger{link}"), Some(0), Shape::HalfSpace)
+    }
+}
+
+fn finger_drive(coordinate: usize) -> Actuator {
+    let kind = ActuatorKind::JointDrive { coordinate, stiffness: 2e3, damping: 100.0, limit: 50.0 };
+    Actuator { name: format!("finger{coordinate}"), kind }
+}
+
+/// Fingers a millimetre off the box and closing; gripper and box tumble together, the box a little faster.
+pub(crate) fn start_gripper(world: &mut World) {
+    let state = world.state_mut();
+    state.bases[1] = Pose::translation(0.0, 0.0, 0.3);
+    state.q.fill(0.029);
+    state.commands.fill(Command { position: 0.04, ..Command::default() });
+    world.set_base_twists(&[twist([0.05, 0.1, -0.03], [0.0; 3]), twist([0.06, 0.1, -0.02], [0.03, 0.01, 0.005])]);
+}
+
+/// The gripper's world at its start.
+pub(crate) fn gripper(setup: &Setup) -> World {
+    let mut world = world(gripper_spec(setup));
+    start_gripper(&mut world);
+    world
+}
+
+/// The plate's world at its start.
+pub(crate) fn box_hits_plate(setup: &Setup) -> World {
+    let mut world = world(box_hits_plate_spec(setup));
+    start_box_hits_plate(&mut world);
+    world
+}
