@@ -212,7 +212,9 @@ fn a_file_that_is_not_there_is_named() {
 #[test]
 fn a_file_of_rubbish_is_refused_in_no_time() {
     let start = std::time::Instant::now();
-    for text in ["a=1\n".repeat(100_000), "[[vehicle]]\n".repeat(100_000), "a.".repeat(100_000), "x = [".repeat(100_000)] {
+    for text in
+        ["a=1\n".repeat(100_000), "[[vehicle]]\n".repeat(100_000), "a.".repeat(100_000), "x = [".repeat(100_000)]
+    {
         let errors = scenario::parse(&text, "s.toml", &[]).expect_err("rubbish").errors;
         assert!(errors.len() <= 1001, "{} errors", errors.len());
     }

@@ -1,9 +1,8 @@
-//! The file as a whole: the starter, the round trip, the schema, places, and arbitrary text.
+//! The file as a whole: the starter, the round trip, places, and arbitrary text.
 
 use proptest::prelude::*;
 use scenario::spec::{ActuatorKind, Environment, FrictionLaw, IntegratorKind};
-use scenario::{Place, Scenario, json_schema, parse, starter, to_toml};
-use serde_json::Value;
+use scenario::{Place, Scenario, parse, starter, to_toml};
 use std::path::Path;
 
 /// A scenario in which every table and nearly every key occurs.
@@ -102,83 +101,6 @@ fn places_lead_back_into_the_file_or_to_the_override() {
     assert_eq!(scenario.place("integrator.step_s"), Place::Override { text: overrides[0].clone() });
     let said = scenario.unknown_name("effect[0].place", ("joint", "elbo"), ["elbow", "wrist"]).to_string();
     assert!(said.ends_with("`effect[0].place`: no joint \"elbo\"; did you mean \"elbow\"?"), "{said}");
-}
-
-/// Every key of every table in a schema, with the tables that alternatives describe.
-fn schema_keys(schema: &Value, keys: &mut Vec<String>) {
-    match schema {
-        Value::Object(map) => {
-            if let Some(Value::Object(properties)) = map.get("properties") {
-                keys.extend(properties.keys().cloned());
-            }
-            map.values().for_each(|value| schema_keys(value, keys));
-        }
-        Value::Array(values) => values.iter().for_each(|value| schema_keys(value, keys)),
-        _ => {}
-    }
-}
-
-/// Every key of a TOML value, without those of free tables (joint names, parameters).
-fn file_keys(value: &toml::Value, keys: &mut Vec<String>) {
-    match value {
-        toml::Value::Table(table) => {
-            for (key, value) in table {
-                keys.push(key.clone());
-                match key.as_str() {
-                    "joints" | "mapping" if value.is_table() => {
-                        value.as_table().into_iter().flat_map(|t| t.values()).for_each(|v| file_keys(v, keys));
-                    }
-                    _ => file_keys(value, keys),
-                }
-            }
-        }
-        toml::Value::Array(values) => values.iter().for_each(|value| file_keys(value, keys)),
-        _ => {}
-    }
-}
-
-#[test]
-fn schema_names_every_key_of_a_full_scenario() {
-    let (mut known, mut used) = (Vec::new(), Vec::new());
-    schema_keys(&json_schema(), &mut known);
-    let value: toml::Table = to_toml(&full()).parse().expect("own output");
-    file_keys(&toml::Value::Table(value), &mut used);
-    for key in used.iter().filter(|key| !["c", "vector", "gain", "frame"].contains(&key.as_str())) {
-        assert!(known.contains(key), "the schema lacks {key}");
-    }
-}
-
-/// The alternatives and tables of a schema that take a table.
-fn tables<'s>(schema: &'s Value, found: &mut Vec<&'s serde_json::Map<String, Value>>) {
-    match schema {
-        Value::Object(map) => {
-            if map.contains_key("properties") {
-                found.push(map);
-            }
-            map.values().for_each(|value| tables(value, found));
-        }
-        Value::Array(values) => values.iter().for_each(|value| tables(value, found)),
-        _ => {}
-    }
-}
-
-#[test]
-fn every_key_of_the_schema_is_described_and_tables_are_closed() {
-    let schema = json_schema();
-    assert_eq!(schema["additionalProperties"], false);
-    let mut found = Vec::new();
-    tables(&schema, &mut found);
-    assert!(found.len() > 40, "{} tables", found.len());
-    for map in found {
-        for (key, value) in map["properties"].as_object().into_iter().flatten() {
-            assert!(value.get("description").is_some() || value.get("const").is_some(), "{key} is not described");
-        }
-    }
-}
-
-#[test]
-fn schema_has_no_null() {
-    assert!(!json_schema().to_string().contains("null"));
 }
 
 proptest! {

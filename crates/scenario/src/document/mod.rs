@@ -109,6 +109,21 @@ impl Node {
         }
     }
 
+    /// The value itself where it is short, for a message: `[0, 0, 1]`, `"text"`.
+    pub(crate) fn quote(&self) -> String {
+        match &self.value {
+            Value::Integer(value) => value.to_string(),
+            Value::Float(value) => format!("{value:?}"),
+            Value::Text(text) => format!("\"{}\"", shortened(text)),
+            Value::List(nodes) if nodes.len() <= 6 && nodes.iter().all(|node| node.number().is_some()) => {
+                format!("[{}]", nodes.iter().map(Node::quote).collect::<Vec<_>>().join(", "))
+            }
+            Value::List(nodes) if nodes.len() == 1 => "[1 element]".to_owned(),
+            Value::List(nodes) => format!("[{} elements]", nodes.len()),
+            _ => self.describe(),
+        }
+    }
+
     /// What it is, for a message: the text itself where it is short.
     pub(crate) fn describe(&self) -> String {
         match &self.value {

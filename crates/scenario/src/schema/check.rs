@@ -62,10 +62,10 @@ impl Checker<'_> {
         }
         let name = part.get("x-name").is_some();
         if text.trim().is_empty() && (name || part.get("minLength").is_some()) {
-            let (key, found, demand) = (path.to_owned(), "\"\"".to_owned(), "must not be empty".to_owned());
+            let (key, found, demand) = (path.to_owned(), node.quote(), "must not be empty".to_owned());
             self.complain(node.origin, Problem::OutOfRange { key, found, demand });
         } else if name && (!is_plain(text) || text == "world") {
-            let found = format!("\"{}\"", shortened(text));
+            let found = node.quote();
             let demand = match text {
                 "world" => "is the name of the surroundings; choose another",
                 _ => "must be letters, digits, `_` and `-` only, so that paths and places can carry it",
@@ -88,7 +88,7 @@ impl Checker<'_> {
                 (min, usize::MAX) => format!("must have at least {min}"),
                 (min, max) => format!("must have {min} to {max} elements"),
             };
-            let (key, found) = (path.to_owned(), node.describe());
+            let (key, found) = (path.to_owned(), node.quote());
             self.complain(node.origin, Problem::OutOfRange { key, found, demand });
         }
         let Some(item) = item_schema(part) else { return };

@@ -1,7 +1,7 @@
 //! Numbers: finite, and within the range of their key.
 
 use super::check::Checker;
-use crate::document::{Node, Value as Tree};
+use crate::document::Node;
 use crate::error::Problem;
 use serde_json::Value;
 
@@ -15,10 +15,7 @@ pub(super) fn check(checker: &mut Checker<'_>, schema: &Value, node: &Node, path
         value => range_demand(schema, value),
     };
     if let Some(demand) = demand {
-        let found = match &node.value {
-            Tree::Integer(value) => value.to_string(),
-            _ => format!("{value:?}"),
-        };
+        let found = node.quote();
         checker.complain(node.origin, Problem::OutOfRange { key: path.to_owned(), found, demand });
     }
 }

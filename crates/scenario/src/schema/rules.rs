@@ -86,7 +86,7 @@ pub(super) fn vector(checker: &mut Checker<'_>, schema: &Value, node: &Node, pat
     } else {
         return;
     };
-    checker.complain(node.origin, Problem::OutOfRange { key: path.to_owned(), found: node.describe(), demand });
+    checker.complain(node.origin, Problem::OutOfRange { key: path.to_owned(), found: node.quote(), demand });
 }
 
 /// Whether numbers, or the first numbers of points, never fall.
