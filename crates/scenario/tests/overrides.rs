@@ -66,6 +66,13 @@ fn what_is_set_can_be_read_back() {
         ("contact[1].friction.damping_n_s_per_m=7", "contact[1].friction.damping_n_s_per_m", "7.0"),
         ("contact[0].enabled=true", "contact[0].enabled", "true"),
         ("contact_default.enabled=false", "contact_default.enabled", "false"),
+        ("contact_default.friction.mu=0.1", "contact_default.friction.mu", "0.1"),
+        ("vehicle[*].pose.position_m[2]=4", "vehicle[*].pose.position_m", "[0.0, 0.0, 4.0] [0.0, 0.0, 4.0]"),
+        (
+            "vehicle[*].twist.angular_deg_per_s[0]=4",
+            "vehicle[*].twist.angular_deg_per_s[*]",
+            "4.0 0.0 0.0 4.0 1.0 -0.3",
+        ),
         ("strategy.prediction=false", "strategy.prediction", "false"),
         ("strategy.kind=none", "strategy", "{ kind = \"none\" }"),
         ("environment.kind=deep-space", "environment", "{ kind = \"deep-space\" }"),
@@ -124,7 +131,13 @@ fn what_leads_nowhere_is_refused_with_the_nearest_spelling() {
         ("integrator.kind=euler", &["no kind \"euler\"", "implicit-euler"]),
         ("vehicle.target.name=servicer", &["the name \"servicer\" is taken at s.toml:9:8"]),
         ("environment.kind=orbital", &["--set", "did you mean \"orbit\"?"]),
-        ("contact_default.friction.mu=0.1", &["lacks `law`: one of bristle, none"]),
+        (
+            "vehicle.target.pose.rpy_deg[2]=1",
+            &[
+                "at `vehicle.target.pose.rpy_deg`, the file says nothing; set all of it, `vehicle.target.pose.rpy_deg=…`",
+            ],
+        ),
+        ("contact[0].friction.mu=0.1", &["`contact[0].friction` lacks `law`: one of bristle, none"]),
     ] {
         let said = with(&[set]).expect_err(set);
         for fragment in fragments {

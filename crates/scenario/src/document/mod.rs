@@ -95,6 +95,27 @@ impl Node {
         self.child("name")?.text()
     }
 
+    /// A default of the schema, as if written at `origin`.
+    pub(crate) fn from_json(json: &serde_json::Value, origin: Origin) -> Self {
+        let entry = |(key, value): (&String, &serde_json::Value)| {
+            (key.clone(), Entry { key_origin: origin, node: Self::from_json(value, origin) })
+        };
+        let value = match json {
+            serde_json::Value::String(text) => Value::Text(text.clone()),
+            serde_json::Value::Bool(flag) => Value::Flag(*flag),
+            serde_json::Value::Number(number) => match number.as_i64() {
+                Some(whole) => Value::Integer(whole),
+                None => Value::Float(number.as_f64().unwrap_or(f64::NAN)),
+            },
+            serde_json::Value::Array(values) => {
+                Value::List(values.iter().map(|value| Self::from_json(value, origin)).collect())
+            }
+            serde_json::Value::Object(map) => Value::Table(map.iter().map(entry).collect()),
+            serde_json::Value::Null => Value::Table(Table::new()), // no default is null: the schema drops those
+        };
+        Self { value, origin }
+    }
+
     /// As a value of the `toml` crate, to deserialise or to hand out.
     pub(crate) fn to_toml(&self) -> toml::Value {
         match &self.value {

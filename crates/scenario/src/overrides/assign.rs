@@ -73,16 +73,29 @@ impl Walk<'_> {
             }
             return Ok(count);
         }
-        if wild && !last {
-            return Err(self.no_match(at, format!("`{key}` is absent there")));
-        }
-        let mut node = Node { value: Tree::Table(BTreeMap::new()), origin: self.value.origin };
-        if !last && schema::table_schema(child).is_none() {
-            return Err(self.no_match(at + 1, "the scenario has none".to_owned()));
-        }
+        let mut node = match self.absent(child, at, wild) {
+            Some(node) => node,
+            None if wild => return Err(self.no_match(at, format!("`{key}` is absent there"))),
+            None => {
+                let whole = path_text(&self.path[..=at]);
+                return Err(self.no_match(at + 1, format!("the file says nothing; set all of it, `{whole}=…`")));
+            }
+        };
         let count = self.node(&mut node, child, at + 1, wild)?;
         table.insert(key.to_owned(), Entry { key_origin: self.value.origin, node });
         Ok(count)
+    }
+
+    /// What an absent key holds before the rest of the path changes it: anything for the last one, the default where
+    /// there is one, or else a table to be filled; not under a `*`, where a branch without it is not meant.
+    fn absent(&self, schema: &Value, at: usize, wild: bool) -> Option<Node> {
+        let origin = self.value.origin;
+        let empty = Node { value: Tree::Table(BTreeMap::new()), origin };
+        match schema.get("default") {
+            _ if at + 1 == self.path.len() => Some(empty),
+            Some(default) => Some(Node::from_json(default, origin)),
+            None => (!wild && schema::table_schema(schema).is_some()).then_some(empty),
+        }
     }
 
     /// A step from a list.

@@ -2,7 +2,8 @@
 //!
 //! A path is keys joined by dots. Tables with a name are addressed by it (`vehicle.target`), elements of other lists by
 //! `[i]` from zero (`contact[0]`, `rpy_deg[2]`); `*` or `[*]` stands for every element, or every key. A key that the
-//! schema knows and the file leaves out is put in. A path that leads nowhere is an error, never silence.
+//! schema knows and the file leaves out is put in, beside the defaults of its table. Behind a `*`, branches that have no
+//! such place are passed over. A path that leads nowhere is an error, never silence.
 //!
 //! Setting the kind of a table (`environment.kind=deep-space`, `contact[*].friction.law=none`) drops the keys that the
 //! new kind does not have.
