@@ -1,1 +1,18 @@
-//! softdock: spacecraft docking and grasp scenarios.
+//! softdock: spacecraft docking and grasp scenarios with bristle friction.
+//!
+//! The layers, each usable by itself: [`spatial`] < [`friction`] < [`contact`] < [`multibody`] < [`sim`] < [`record`] <
+//! [`scenario`].
+//!
+//! ```no_run
+//! use softdock::{scenario, sim};
+//! let file = std::path::Path::new("scenarios/tumbling-capture.toml");
+//! let scenario = scenario::load(file, &["contact[0].friction.mu=0.02".into()])?;
+//! let mut mission = scenario::build(&scenario)?;
+//! let mut judge = scenario::outcome::Judge::new(&mission);
+//! let ended = mission.world.run(mission.steps, &*mission.controller, &mut [&mut judge as &mut dyn sim::Observer]);
+//! let outcome = judge.conclude(&mission.world, &ended);
+//! println!("{}: {}", outcome.outcome, outcome.reason);
+//! # Ok::<(), scenario::ScenarioErrors>(())
+//! ```
+
+pub use {contact, friction, multibody, record, scenario, sim, spatial};

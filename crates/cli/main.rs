@@ -1,2 +1,79 @@
-//! The `softdock` command.
-fn main() {}
+//! The `softdock` command: one file per subcommand.
+//!
+//! Exit status: 0 as expected; 1 an expectation failed; 2 usage; 3 bad input; 4 diverged.
+
+mod check;
+mod new;
+mod progress;
+mod run;
+mod schema;
+mod summary;
+mod view;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Spacecraft docking and grasp scenarios: free-flying robots, tumbling targets, contact with bristle friction.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    max_term_width = 100,
+    after_help = "\
+A first run:
+  softdock run scenarios/tumbling-capture.toml --out out/capture
+  rerun out/capture/run.rrd            the recording, in the Rerun viewer
+  out/capture/signals.svg              the signals, without a viewer
+
+The viewer is the program `rerun` of the same version as this command's `rerun` crate (0.36): `pip install
+rerun-sdk==0.36.3` or `cargo install rerun-cli --version 0.36.3 --locked`. With it, `--spawn` opens a run as it goes.
+
+Exit status: 0 as expected; 1 an expectation failed; 2 usage; 3 bad input; 4 diverged."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Subcommands,
+}
+
+#[derive(Debug, Subcommand)]
+enum Subcommands {
+    /// Run a scenario: recording, signals, summary, verdict
+    Run(run::Arguments),
+    /// Check a scenario or a URDF and say everything that is wrong
+    Check(check::Arguments),
+    /// Write a commented starter scenario
+    New(new::Arguments),
+    /// Show a URDF, or a scenario at t = 0
+    View(view::Arguments),
+    /// Print the JSON Schema of the scenario file
+    Schema,
+}
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Status {
+    AsExpected,
+    NotAsExpected,
+    Diverged,
+}
+
+/// Status of a bad input: a file that is missing, broken or contradicts itself.
+const BAD_INPUT: u8 = 3;
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Subcommands::Run(arguments) => run::main(&arguments),
+        Subcommands::Check(arguments) => check::main(&arguments),
+        Subcommands::New(arguments) => new::main(&arguments),
+        Subcommands::View(arguments) => view::main(&arguments),
+        Subcommands::Schema => schema::main(),
+    };
+    match result {
+        Ok(Status::AsExpected) => ExitCode::SUCCESS,
+        Ok(Status::NotAsExpected) => ExitCode::from(1),
+        Ok(Status::Diverged) => ExitCode::from(4),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(BAD_INPUT)
+        }
+    }
+}

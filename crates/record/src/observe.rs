@@ -175,10 +175,11 @@ fn standard_channels(model: &Model, pairs: &[(Option<usize>, Option<usize>)]) ->
     for vehicle in &model.vehicles {
         let name = |quantity: &str, axis: &str| format!("body.{}.{quantity}.{axis}", vehicle.name);
         let xyz = ["x", "y", "z"];
-        xyz.map(|k| add(name("position", k), "m", Plot::Bodies, "base origin in W"));
-        ["w", "x", "y", "z"].map(|k| add(name("orientation", k), "1", Plot::Other, "body axes in W"));
-        xyz.map(|k| add(name("linear_velocity", k), "m/s", Plot::Bodies, "base origin, W axes"));
-        xyz.map(|k| add(name("angular_velocity", k), "rad/s", Plot::Bodies, "body axes"));
+        xyz.iter().for_each(|k| add(name("position", k), "m", Plot::Bodies, "base origin in W"));
+        let wxyz = ["w", "x", "y", "z"];
+        wxyz.iter().for_each(|k| add(name("orientation", k), "1", Plot::Other, "body axes in W"));
+        xyz.iter().for_each(|k| add(name("linear_velocity", k), "m/s", Plot::Bodies, "base origin, W axes"));
+        xyz.iter().for_each(|k| add(name("angular_velocity", k), "rad/s", Plot::Bodies, "body axes"));
     }
     for vehicle in &model.vehicles {
         for joint in vehicle.tree.joints.iter().filter(|j| !j.is_mimic && j.width == 1) {

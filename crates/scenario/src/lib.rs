@@ -2,16 +2,20 @@
 //!
 //! [`load`] reads a scenario file, applies `--set` overrides and checks everything at once; [`Scenario`] is the result.
 
+mod build;
 mod document;
 mod error;
 mod glob;
 mod load;
+pub mod outcome;
 mod overrides;
 mod schema;
 pub mod spec;
 mod spelling;
 mod starter;
+pub mod strategy;
 
+pub use build::{Mission, build, shape_of_geometry};
 pub use document::Source;
 pub use error::{Place, Problem, ScenarioError, ScenarioErrors};
 pub use glob::{glob_matches, is_glob};

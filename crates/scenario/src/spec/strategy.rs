@@ -37,6 +37,9 @@ pub struct TrackAndGrasp {
     pub grapple_frame: String,
     /// Joints that close the gripper: their names in the servicer, or one.
     pub gripper: OneOrMany,
+    /// Error of the assumed grapple point, in its own frame, m.
+    #[serde(default)]
+    pub grapple_offset_m: [f64; 3],
     /// Distance, back along the tool's z axis, at which the motion is matched before the final approach, m.
     #[serde(default = "default_standoff")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]

@@ -1,0 +1,139 @@
+//! Actuators by name → coordinates and bodies; reaction wheels become rotors of the tree.
+
+use super::faults::Faults;
+use super::shapes::place_of;
+use crate::glob::{glob_matches, is_glob};
+use crate::spec::{self, Scenario};
+use multibody::{Joint, JointKind};
+use sim::{Actuator, ActuatorKind, VehicleSpec};
+use spatial::Vec3;
+
+/// The world's actuators, and how the file's names lead to them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ActuatorTable {
+    pub(crate) actuators: Vec<Actuator>,
+    /// Rotor speeds at t = 0, by coordinate.
+    pub(crate) rotor_speeds: Vec<(usize, f64)>,
+}
+
+impl ActuatorTable {
+    /// Actuators of that name, or drives of that group (`arm` means `arm/shoulder`, `arm/elbow`, …).
+    pub(crate) fn find(&self, name: &str) -> impl Iterator<Item = usize> + '_ {
+        let prefix = format!("{name}/");
+        let name = name.to_owned();
+        let matches = move |a: &Actuator| a.name == name || a.name.starts_with(&prefix);
+        self.actuators.iter().enumerate().filter(move |(_, a)| matches(a)).map(|(i, _)| i)
+    }
+}
+
+/// Resolves all actuators; wheels are added to the trees first, since they shift the coordinates behind them.
+pub(super) fn resolve(scenario: &Scenario, vehicles: &mut [VehicleSpec], faults: &mut Faults<'_>) -> ActuatorTable {
+    let mut rotors = vec![None; scenario.actuators.len()];
+    for (i, actuator) in scenario.actuators.iter().enumerate() {
+        if let spec::ActuatorKind::ReactionWheel { link, inertia_kg_m2, .. } = &actuator.kind
+            && let Some((Some(v), l)) = place_of(vehicles, link, &format!("actuator[{i}].link"), faults)
+        {
+            let (tree, axis) = (&mut vehicles[v].tree, actuator.kind.axis().unwrap_or_else(Vec3::x));
+            let (body, axis) = (tree.links[l].body, tree.links[l].frame_bl.rot * axis);
+            rotors[i] = Some((v, tree.add_rotor(body, &axis, *inertia_kg_m2, &actuator.name)));
+        }
+    }
+    let mut table = ActuatorTable::default();
+    for (i, actuator) in scenario.actuators.iter().enumerate() {
+        add(&mut table, actuator, &Site { i, vehicles, rotor: rotors[i] }, faults);
+    }
+    table
+}
+
+/// Where an actuator is being built.
+struct Site<'a> {
+    i: usize,
+    vehicles: &'a [VehicleSpec],
+    rotor: Option<(usize, usize)>,
+}
+
+impl Site<'_> {
+    /// Index into the world's `v` of a joint's coordinate.
+    fn coordinate(&self, vehicle: usize, joint: &Joint) -> usize {
+        self.vehicles[..vehicle].iter().map(|v| v.tree.nv).sum::<usize>() + joint.v_index
+    }
+
+    fn body(&self, vehicle: usize, link: usize) -> usize {
+        let before: usize = self.vehicles[..vehicle].iter().map(|v| v.tree.bodies.len()).sum();
+        before + self.vehicles[vehicle].tree.links[link].body
+    }
+}
+
+fn add(table: &mut ActuatorTable, actuator: &spec::Actuator, site: &Site<'_>, faults: &mut Faults<'_>) {
+    let key = |k: &str| format!("actuator[{}].{k}", site.i);
+    let mut push = |name: String, kind| table.actuators.push(Actuator { name, kind });
+    match &actuator.kind {
+        spec::ActuatorKind::JointTorque { joint, limit_n_m, limit_n } => {
+            for (v, joint) in joints_of(site, joint, &key("joint"), faults) {
+                let limit = limit_n_m.or(*limit_n).unwrap_or(joint.effort_limit);
+                let coordinate = site.coordinate(v, joint);
+                push(actuator.name.clone(), ActuatorKind::JointEffort { coordinate, limit });
+            }
+        }
+        spec::ActuatorKind::JointDrive(drive) => {
+            let single = drive.joints.is_empty();
+            for pattern in drive.joint_patterns() {
+                for (v, joint) in joints_of(site, pattern, &key(if single { "joint" } else { "joints" }), faults) {
+                    if drive.is_linear() != (joint.kind == JointKind::Prismatic) {
+                        faults.add(&key(""), unit_mismatch(joint));
+                    }
+                    let name = if single { actuator.name.clone() } else { format!("{}/{}", actuator.name, joint.name) };
+                    let coordinate = site.coordinate(v, joint);
+                    let limit = drive.limit().unwrap_or(joint.effort_limit);
+                    let (stiffness, damping) = (drive.stiffness(), drive.damping());
+                    push(name, ActuatorKind::JointDrive { coordinate, stiffness, damping, limit });
+                }
+            }
+        }
+        spec::ActuatorKind::Thruster { link, position_m, max_force_n, .. } => {
+            if let Some((Some(v), l)) = place_of(site.vehicles, link, &key("link"), faults) {
+                let frame = &site.vehicles[v].tree.links[l].frame_bl;
+                let direction = frame.rot * actuator.kind.axis().unwrap_or_else(Vec3::x);
+                let position = frame.point(&Vec3::from(*position_m));
+                let body = site.body(v, l);
+                push(actuator.name.clone(), ActuatorKind::Thruster { body, position, direction, max_force: *max_force_n });
+            }
+        }
+        spec::ActuatorKind::ReactionWheel { torque_limit_n_m, speed_rad_per_s, .. } => {
+            let Some((v, j)) = site.rotor else { return };
+            let coordinate = site.coordinate(v, &site.vehicles[v].tree.joints[j]);
+            push(actuator.name.clone(), ActuatorKind::JointEffort { coordinate, limit: *torque_limit_n_m });
+            table.rotor_speeds.push((coordinate, *speed_rad_per_s));
+        }
+    }
+}
+
+fn unit_mismatch(joint: &Joint) -> String {
+    let (kind, keys) = if joint.kind == JointKind::Prismatic {
+        ("prismatic", "stiffness_n_per_m and damping_n_s_per_m")
+    } else {
+        ("revolute", "stiffness_n_m_per_rad and damping_n_m_s_per_rad")
+    };
+    format!("joint \"{}\" is {kind}; give {keys}", joint.name)
+}
+
+/// Joints with a single coordinate of their own that `vehicle/joint` or a glob names.
+fn joints_of<'a>(site: &Site<'a>, pattern: &str, key: &str, faults: &mut Faults<'_>) -> Vec<(usize, &'a Joint)> {
+    let driven = |j: &Joint| !j.is_mimic && matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
+    let mut found = Vec::new();
+    let mut valid = Vec::new();
+    for (v, vehicle) in site.vehicles.iter().enumerate() {
+        for joint in vehicle.tree.joints.iter().filter(|j| driven(j)) {
+            let name = format!("{}/{}", vehicle.name, joint.name);
+            let hit = if is_glob(pattern) { glob_matches(pattern, &name) } else { name == pattern };
+            if hit {
+                found.push((v, joint));
+            }
+            valid.push(name);
+        }
+    }
+    if found.is_empty() {
+        faults.unknown(key, "joint that can be driven", pattern, valid.iter().map(String::as_str));
+    }
+    found
+}

@@ -1,0 +1,137 @@
+//! From the checked file to a world that runs: spec → model → state, and the plan of what to do with it.
+//!
+//! Every name is resolved here; what cannot be built is told all at once, each fault with its line in the file.
+
+mod actuators;
+mod faults;
+mod kinematics;
+mod shapes;
+mod start;
+mod vehicles;
+
+pub(crate) use actuators::ActuatorTable;
+pub(crate) use faults::Faults;
+pub(crate) use kinematics::{calc_error, halves, solve_pose};
+pub use shapes::shape_of_geometry;
+
+use crate::error::ScenarioErrors;
+use crate::spec::{self, Scenario};
+use crate::strategy;
+use multibody::RobotDescription;
+use sim::{Controller, Environment, Integrator, Model, ModelSpec, World};
+use spatial::Vec3;
+use std::sync::Arc;
+
+/// A scenario, ready to run.
+pub struct Mission {
+    /// The scenario it came from.
+    pub scenario: Scenario,
+    /// The robots as their files describe them, one per vehicle.
+    pub robots: Vec<RobotDescription>,
+    /// The world at t = 0.
+    pub world: World,
+    /// Guidance and control.
+    pub controller: Box<dyn Controller + Send + Sync>,
+    /// Steps of the whole run.
+    pub steps: u64,
+    /// Steps between two logged samples.
+    pub steps_per_sample: u64,
+}
+
+impl std::fmt::Debug for Mission {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Mission").field("scenario", &self.scenario.name).field("steps", &self.steps).finish()
+    }
+}
+
+/// Builds the world and the plan of a scenario.
+pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
+    let mut faults = Faults::new(scenario);
+    let Some(vehicles) = vehicles::load(scenario, &mut faults) else { return Err(faults.into_errors()) };
+    let (robots, mut specs) = vehicles;
+    let table = actuators::resolve(scenario, &mut specs, &mut faults);
+    let (shapes, pairs) = shapes::resolve(scenario, &robots, &specs, &mut faults);
+    refuse_what_is_not_simulated(scenario, &mut faults);
+    if !faults.is_empty() {
+        return Err(faults.into_errors());
+    }
+    let spec = ModelSpec {
+        vehicles: specs,
+        shapes,
+        pairs,
+        actuators: table.actuators.clone(),
+        environment: environment(&scenario.environment),
+        integrator: integrator(scenario.integrator.kind),
+        step: scenario.integrator.step_s,
+        one_sided_force: Vec3::zeros(),
+    };
+    let model = match Model::build(spec) {
+        Ok(model) => Arc::new(model),
+        Err(error) => {
+            faults.add("", error.to_string());
+            return Err(faults.into_errors());
+        }
+    };
+    finish(scenario, robots, &model, &table, faults)
+}
+
+fn finish(
+    scenario: &Scenario,
+    robots: Vec<RobotDescription>,
+    model: &Arc<Model>,
+    table: &ActuatorTable,
+    mut faults: Faults<'_>,
+) -> Result<Mission, ScenarioErrors> {
+    let world = start::world(scenario, model, table, &mut faults);
+    let controller = strategy::build(scenario, model, table, &mut faults);
+    match controller {
+        Some(controller) if faults.is_empty() => Ok(Mission {
+            scenario: scenario.clone(),
+            robots,
+            world,
+            controller,
+            steps: (scenario.duration_s / scenario.integrator.step_s).round().max(1.0) as u64,
+            steps_per_sample: samples(scenario),
+        }),
+        _ => Err(faults.into_errors()),
+    }
+}
+
+fn samples(scenario: &Scenario) -> u64 {
+    (1.0 / (scenario.output.log_rate_hz * scenario.integrator.step_s)).round().max(1.0) as u64
+}
+
+/// The file's words are ahead of the simulator's: what is understood and not yet simulated is refused, never ignored.
+fn refuse_what_is_not_simulated(scenario: &Scenario, faults: &mut Faults<'_>) {
+    let later = |what: &str| format!("{what} are read and checked, but not simulated in this version; remove the entry");
+    if !scenario.effects.is_empty() {
+        faults.add("effect[0]", later("effects"));
+    }
+    if !scenario.drives.is_empty() {
+        faults.add("drive[0]", later("prescribed motions"));
+    }
+    if !scenario.sensors.is_empty() {
+        faults.add("sensor[0]", later("sensors"));
+    }
+}
+
+fn environment(spec: &spec::Environment) -> Environment {
+    match *spec {
+        spec::Environment::DeepSpace | spec::Environment::AirBearing => Environment::DeepSpace,
+        spec::Environment::Orbit { mean_motion_rad_per_s, gravity_gradient } => {
+            Environment::Orbit { mean_motion: mean_motion_rad_per_s, gravity_gradient }
+        }
+        spec::Environment::Lab { gravity_m_per_s2 } => {
+            Environment::Uniform { gravity: Vec3::from(gravity_m_per_s2) }
+        }
+    }
+}
+
+fn integrator(kind: spec::IntegratorKind) -> Integrator {
+    match kind {
+        spec::IntegratorKind::ImplicitEuler => Integrator::ImplicitEuler,
+        spec::IntegratorKind::ImplicitMidpoint => Integrator::ImplicitMidpoint,
+        spec::IntegratorKind::SemiImplicitEuler => Integrator::SemiImplicitEuler,
+        spec::IntegratorKind::Rk4 => Integrator::RungeKutta4,
+    }
+}

@@ -1,0 +1,198 @@
+//! Collision shapes and the laws of their pairs.
+//!
+//! Shapes of different vehicles (and of the world) may touch unless a `[[contact]]` says `enabled = false`; shapes of one
+//! vehicle only where a `[[contact]]` names them. Every shape answers to its own name and to its link's.
+
+use super::faults::Faults;
+use crate::spec::{ContactLaw, FrictionLaw, NormalLaw, Scenario, ShapeKind};
+use contact::{Normal, Shape};
+use friction::Bristle;
+use multibody::{Geometry, RobotDescription};
+use sim::{Base, PairLaw, ShapeSpec, VehicleSpec};
+use spatial::Vec3;
+
+/// A shape with the names it answers to.
+struct Named {
+    spec: ShapeSpec,
+    names: Vec<String>,
+}
+
+impl Named {
+    fn names(&self) -> Vec<&str> {
+        self.names.iter().map(String::as_str).collect()
+    }
+}
+
+/// All shapes, and the pairs that may touch.
+pub(super) fn resolve(
+    scenario: &Scenario,
+    robots: &[RobotDescription],
+    vehicles: &[VehicleSpec],
+    faults: &mut Faults<'_>,
+) -> (Vec<ShapeSpec>, Vec<([usize; 2], PairLaw)>) {
+    let mut shapes = Vec::new();
+    for (v, robot) in robots.iter().enumerate() {
+        shapes.extend(of_robot(v, &vehicles[v].name, robot));
+    }
+    add_scenario_shapes(scenario, vehicles, &mut shapes, faults);
+    check_rules(scenario, &shapes, faults);
+    let mut pairs = Vec::new();
+    for b in 1..shapes.len() {
+        for a in 0..b {
+            if let Some(law) = law_of_pair(scenario, vehicles, &shapes[a], &shapes[b]) {
+                pairs.push(([a, b], law));
+            }
+        }
+    }
+    // The sides' order is part of the sign of a force; the pairs' order part of the order of sums.
+    pairs.sort_by_key(|(pair, _)| *pair);
+    (shapes.into_iter().map(|n| n.spec).collect(), pairs)
+}
+
+fn of_robot<'a>(v: usize, vehicle: &'a str, robot: &'a RobotDescription) -> impl Iterator<Item = Named> + 'a {
+    robot.links.iter().enumerate().flat_map(move |(link, description)| {
+        description.collisions.iter().map(move |collision| Named {
+            spec: ShapeSpec {
+                name: collision.name.clone(),
+                vehicle: Some(v),
+                link,
+                pose_ls: collision.pose_ls,
+                shape: shape_of_geometry(&collision.geometry),
+            },
+            names: vec![format!("{vehicle}/{}", collision.name), format!("{vehicle}/{}", description.name)],
+        })
+    })
+}
+
+/// The collision shape of a URDF geometry.
+pub fn shape_of_geometry(geometry: &Geometry) -> Shape {
+    match geometry {
+        Geometry::Box { size } => Shape::Cuboid { half_extents: 0.5 * size },
+        Geometry::Sphere { radius } => Shape::Ball { radius: *radius },
+        Geometry::Cylinder { radius, length } => Shape::Cylinder { radius: *radius, half_length: 0.5 * length },
+        Geometry::Capsule { radius, length } => Shape::Capsule { radius: *radius, half_length: 0.5 * length },
+        Geometry::Mesh(mesh) => Shape::TriMesh {
+            vertices: mesh.vertices.iter().map(|v| Vec3::from(*v)).collect(),
+            triangles: mesh.triangles.clone(),
+        },
+    }
+}
+
+fn add_scenario_shapes(
+    scenario: &Scenario,
+    vehicles: &[VehicleSpec],
+    shapes: &mut Vec<Named>,
+    faults: &mut Faults<'_>,
+) {
+    for (i, shape) in scenario.shapes.iter().enumerate() {
+        let Some((vehicle, link)) = place_of(vehicles, &shape.on, &format!("shape[{i}].on"), faults) else { continue };
+        let spec = ShapeSpec {
+            name: shape.name.clone(),
+            vehicle,
+            link,
+            pose_ls: shape.pose.pose(),
+            shape: shape_of_kind(&shape.kind),
+        };
+        let mut names = vec![shape.place()];
+        names.extend(vehicle.map(|_| shape.on.clone()));
+        shapes.push(Named { spec, names });
+    }
+}
+
+/// Vehicle and link of `vehicle/link`; no vehicle for "world".
+pub(super) fn place_of(
+    vehicles: &[VehicleSpec],
+    on: &str,
+    key: &str,
+    faults: &mut Faults<'_>,
+) -> Option<(Option<usize>, usize)> {
+    if on == "world" {
+        return Some((None, 0));
+    }
+    let (name, link) = on.split_once('/').unwrap_or((on, ""));
+    let Some(v) = vehicles.iter().position(|v| v.name == name) else {
+        faults.unknown(key, "vehicle", name, vehicles.iter().map(|v| v.name.as_str()));
+        return None;
+    };
+    let links = &vehicles[v].tree.links;
+    let found = links.iter().position(|l| l.name == link);
+    if found.is_none() {
+        faults.unknown(key, "link", link, links.iter().map(|l| l.name.as_str()));
+    }
+    found.map(|l| (Some(v), l))
+}
+
+fn shape_of_kind(kind: &ShapeKind) -> Shape {
+    match *kind {
+        ShapeKind::Box { size_m } => Shape::Cuboid { half_extents: 0.5 * Vec3::from(size_m) },
+        ShapeKind::Sphere { radius_m } => Shape::Ball { radius: radius_m },
+        ShapeKind::Cylinder { radius_m, length_m } => {
+            Shape::Cylinder { radius: radius_m, half_length: 0.5 * length_m }
+        }
+        ShapeKind::Capsule { radius_m, length_m } if length_m > 0.0 => {
+            Shape::Capsule { radius: radius_m, half_length: 0.5 * length_m }
+        }
+        ShapeKind::Capsule { radius_m, .. } => Shape::Ball { radius: radius_m },
+        ShapeKind::HalfSpace => Shape::HalfSpace,
+    }
+}
+
+/// A rule that names nothing is a slip of the pen.
+fn check_rules(scenario: &Scenario, shapes: &[Named], faults: &mut Faults<'_>) {
+    for (i, rule) in scenario.contacts.iter().enumerate() {
+        for (k, pattern) in rule.between.iter().enumerate() {
+            let all = || shapes.iter().flat_map(|s| s.names.iter().map(String::as_str));
+            if !all().any(|name| crate::glob_matches(pattern, name)) {
+                let valid: Vec<&str> = all().collect();
+                faults.unknown(&format!("contact[{i}].between[{k}]"), "shape or link", pattern, valid);
+            }
+        }
+    }
+}
+
+fn law_of_pair(scenario: &Scenario, vehicles: &[VehicleSpec], a: &Named, b: &Named) -> Option<PairLaw> {
+    if body_of(vehicles, &a.spec) == body_of(vehicles, &b.spec) {
+        return None;
+    }
+    let (names_a, names_b) = (a.names(), b.names());
+    if a.spec.vehicle == b.spec.vehicle {
+        let named = |a: &str| names_b.iter().any(|b| scenario.contacts.iter().any(|r| r.matches(a, b)));
+        names_a.iter().find(|a| named(a))?;
+    }
+    let law = scenario.contact_law(&names_a, &names_b);
+    law.enabled.then(|| pair_law(&law))
+}
+
+/// What a shape is fixed to; all that stands still in W is one body.
+fn body_of(vehicles: &[VehicleSpec], shape: &ShapeSpec) -> Option<(usize, usize)> {
+    let v = shape.vehicle?;
+    let body = vehicles[v].tree.links[shape.link].body;
+    (vehicles[v].base != Base::Fixed || body != 0).then_some((v, body))
+}
+
+fn pair_law(law: &ContactLaw) -> PairLaw {
+    let normal = match law.normal {
+        NormalLaw::HuntCrossley { stiffness_n_per_m_exp, exponent, dissipation_s_per_m } => {
+            contact::NormalLaw::HuntCrossley {
+                stiffness: stiffness_n_per_m_exp,
+                exponent,
+                dissipation: dissipation_s_per_m,
+            }
+        }
+        NormalLaw::Linear { stiffness_n_per_m, damping_n_s_per_m } => {
+            contact::NormalLaw::SpringDamper { stiffness: stiffness_n_per_m, damping: damping_n_s_per_m }
+        }
+    };
+    let friction = match law.friction {
+        FrictionLaw::None => None,
+        FrictionLaw::Bristle(b) => Some(Bristle {
+            mu_static: b.mu_static.unwrap_or(b.mu),
+            mu_kinetic: b.mu,
+            stribeck_speed: b.stribeck_velocity_m_per_s.unwrap_or(1e-3),
+            stiffness: b.stiffness_n_per_m,
+            damping: b.damping_n_s_per_m,
+            viscous: b.viscous_n_s_per_m,
+        }),
+    };
+    PairLaw { normal: Normal::new(normal), friction }
+}

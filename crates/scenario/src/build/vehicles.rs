@@ -1,0 +1,83 @@
+//! URDF files → trees and bases.
+
+use super::faults::Faults;
+use crate::spec::{BaseAxis, Environment, Scenario, Vehicle};
+use multibody::{RobotDescription, SearchPaths, Tree, load_urdf};
+use sim::VehicleSpec;
+use spatial::Vec3;
+
+/// Loads every vehicle's robot; `None` if one cannot be had, since nothing else can be checked then.
+pub(super) fn load(
+    scenario: &Scenario,
+    faults: &mut Faults<'_>,
+) -> Option<(Vec<RobotDescription>, Vec<VehicleSpec>)> {
+    let dir = scenario.source.file_dir();
+    let mut loaded = Vec::with_capacity(scenario.vehicles.len());
+    for (i, vehicle) in scenario.vehicles.iter().enumerate() {
+        let search = SearchPaths::new(vehicle.package_paths.iter().map(|p| dir.join(p)));
+        match load_urdf(&dir.join(&vehicle.urdf), &search) {
+            Ok(robot) => loaded.push((robot, base(scenario, i, vehicle, faults))),
+            Err(errors) => faults.add(&format!("vehicle[{i}].urdf"), format!("the URDF cannot be used:\n{errors}")),
+        }
+    }
+    if loaded.len() < scenario.vehicles.len() {
+        return None;
+    }
+    let specs = |(vehicle, (robot, base)): (&Vehicle, &(RobotDescription, sim::Base))| VehicleSpec {
+        name: vehicle.name.clone(),
+        tree: Tree::from_description(robot),
+        base: *base,
+    };
+    let specs = scenario.vehicles.iter().zip(&loaded).map(specs).collect();
+    Some((loaded.into_iter().map(|(robot, _)| robot).collect(), specs))
+}
+
+fn base(scenario: &Scenario, i: usize, vehicle: &Vehicle, faults: &mut Faults<'_>) -> sim::Base {
+    if vehicle.base.is_fixed() {
+        return sim::Base::Fixed;
+    }
+    if vehicle.base.is_free() {
+        // On an air bearing a free vehicle floats in the plane.
+        return if scenario.environment == Environment::AirBearing {
+            sim::Base::Only([false, false, true, true, true, false])
+        } else {
+            sim::Base::Free
+        };
+    }
+    let mask = mask_in_world(vehicle);
+    if mask.is_none() {
+        let reason = "the free directions are those of the base's initial pose, and its axes must lie along W's; \
+                      turn the pose by multiples of 90 deg, or free whole planes that the turn keeps";
+        faults.add(&format!("vehicle[{i}].base"), reason);
+    }
+    sim::Base::Only(mask.unwrap_or([true; 6]))
+}
+
+/// The free components of the twist in W axes; `None` where the initial attitude mixes free and held ones.
+fn mask_in_world(vehicle: &Vehicle) -> Option<[bool; 6]> {
+    let mut own = [false; 6];
+    for axis in vehicle.base.free_axes() {
+        own[match axis {
+            BaseAxis::Roll => 0,
+            BaseAxis::Pitch => 1,
+            BaseAxis::Yaw => 2,
+            BaseAxis::X => 3,
+            BaseAxis::Y => 4,
+            BaseAxis::Z => 5,
+        }] = true;
+    }
+    let rot = vehicle.pose.pose().rotation;
+    let mut mask = [false; 6];
+    for half in [0, 3] {
+        for k in 0..3 {
+            // W's axis k, seen from the base: it is free if all the own axes it is made of are, held if none is.
+            let seen = rot.inverse() * Vec3::ith(k, 1.0);
+            let parts: Vec<bool> = (0..3).filter(|j| seen[*j].abs() > 1e-9).map(|j| own[half + j]).collect();
+            if parts.iter().any(|p| *p != parts[0]) {
+                return None;
+            }
+            mask[half + k] = parts.first().copied().unwrap_or(false);
+        }
+    }
+    Some(mask)
+}

@@ -1,0 +1,48 @@
+//! What became of a run: outcome, reason, metrics, events, and the file's expectations.
+
+mod capture;
+mod creep;
+mod expect;
+mod judge;
+
+pub use expect::{Verdict, check_expectations};
+pub use judge::Judge;
+
+use record::Event;
+use serde_json::{Map, Value};
+
+/// One figure of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Metric {
+    /// Its name in `summary.json` and in `[[expect]]`; a figure's name ends in its unit.
+    pub name: &'static str,
+    /// A flag, number or text.
+    pub value: Value,
+    /// What it is, for people.
+    pub meaning: &'static str,
+}
+
+/// What became of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// `captured`, `lost`, `not-reached`, `completed`, `diverged`.
+    pub outcome: &'static str,
+    /// Why, in a sentence.
+    pub reason: String,
+    /// Figures.
+    pub metrics: Vec<Metric>,
+    /// Events in order of time.
+    pub events: Vec<Event>,
+}
+
+impl Outcome {
+    /// A metric's value.
+    pub fn metric(&self, name: &str) -> Option<&Value> {
+        self.metrics.iter().find(|m| m.name == name).map(|m| &m.value)
+    }
+
+    /// The metrics as JSON.
+    pub fn metrics_json(&self) -> Map<String, Value> {
+        self.metrics.iter().map(|m| (m.name.to_owned(), m.value.clone())).collect()
+    }
+}

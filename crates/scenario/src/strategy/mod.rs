@@ -1,0 +1,30 @@
+//! Guidance and control: one file per strategy; file-side enum, step-side [`sim::Controller`], joined by one match.
+
+mod free_floating;
+mod predict;
+mod replay;
+mod schedule;
+mod track_and_grasp;
+mod trajectory;
+
+pub use track_and_grasp::{Phase, phase_of};
+
+use crate::build::{ActuatorTable, Faults};
+use crate::spec::{Scenario, Strategy};
+use sim::{Controller, Model, NoControl};
+use std::sync::Arc;
+
+/// The controller of a scenario; `None` where its names lead nowhere (the faults say where).
+pub(crate) fn build(
+    scenario: &Scenario,
+    model: &Arc<Model>,
+    table: &ActuatorTable,
+    faults: &mut Faults<'_>,
+) -> Option<Box<dyn Controller + Send + Sync>> {
+    match &scenario.strategy {
+        Strategy::None => Some(Box::new(NoControl)),
+        Strategy::Schedule(spec) => Some(Box::new(schedule::build(spec, table, model, faults)?)),
+        Strategy::Replay(spec) => Some(Box::new(replay::build(scenario, spec, table, model, faults)?)),
+        Strategy::TrackAndGrasp(spec) => Some(Box::new(track_and_grasp::build(spec, model, table, faults)?)),
+    }
+}

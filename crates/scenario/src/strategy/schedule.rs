@@ -1,0 +1,62 @@
+//! Commands as piecewise linear functions of time.
+
+use crate::build::{ActuatorTable, Faults};
+use crate::spec::Schedule;
+use sim::{ActuatorKind, Command, Controller, Model, World};
+
+/// Plays courses of commands.
+#[derive(Clone, Debug)]
+pub(super) struct SchedulePlayer {
+    courses: Vec<(usize, Target, crate::spec::Command)>,
+}
+
+/// Which part of a [`Command`] a value is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Target {
+    Position,
+    Effort,
+}
+
+impl Target {
+    /// What a single value means to an actuator.
+    pub(super) fn of(kind: &ActuatorKind) -> Self {
+        match kind {
+            ActuatorKind::JointDrive { .. } => Self::Position,
+            ActuatorKind::JointEffort { .. } | ActuatorKind::Thruster { .. } => Self::Effort,
+        }
+    }
+
+    pub(super) fn write(self, value: f64, command: &mut Command) {
+        match self {
+            Self::Position => command.position = value,
+            Self::Effort => command.effort = value,
+        }
+    }
+}
+
+pub(super) fn build(
+    spec: &Schedule,
+    table: &ActuatorTable,
+    model: &Model,
+    faults: &mut Faults<'_>,
+) -> Option<SchedulePlayer> {
+    let mut courses = Vec::new();
+    for (i, course) in spec.commands.iter().enumerate() {
+        let found: Vec<usize> = table.find(&course.actuator).collect();
+        if found.is_empty() {
+            let valid = model.actuators.iter().map(|a| a.name.as_str());
+            faults.unknown(&format!("strategy.commands[{i}].actuator"), "actuator", &course.actuator, valid);
+            return None;
+        }
+        courses.extend(found.into_iter().map(|a| (a, Target::of(&model.actuators[a].kind), course.clone())));
+    }
+    Some(SchedulePlayer { courses })
+}
+
+impl Controller for SchedulePlayer {
+    fn command(&self, world: &World, _: &mut Vec<f64>, commands: &mut [Command]) {
+        for (actuator, target, course) in &self.courses {
+            target.write(course.value_at(world.state().time), &mut commands[*actuator]);
+        }
+    }
+}
