@@ -64,6 +64,8 @@ pub(crate) struct Outcome {
     /// Deflection and regime by the law.
     pub s: Vec3,
     pub sticks: bool,
+    /// Passes of this step in which the slip force turned by more than 90°.
+    pub turns: u8,
     /// −h ∂f/∂u', kg.
     pub g: Mat3,
     /// The line's force at u' = u, N.
@@ -73,8 +75,12 @@ pub(crate) struct Outcome {
 }
 
 impl Touch {
-    /// Evaluates the law at the predicted relative velocity `u_new`; the line through it becomes the linearisation if
-    /// `relinearise`.
+    /// Evaluates the law at the predicted relative velocity `u_new`, and draws the line for the next solve.
+    ///
+    /// Newton's tangent in slip (turning only) overshoots a point that is about to stop, and would throw it to and fro
+    /// for ever. Where the slip force has turned, the next line is that of the bristle without a bound, which leads to
+    /// the neighbourhood of rest; where that did not settle it, the secant through the unloaded bristle: friction is
+    /// the slope of a convex potential, which the secant's parabola bounds from above, so that every pass descends.
     pub fn eval(&mut self, law: &PairLaw, u_new: &Vec3, h: f64) -> Outcome {
         let (n, at) = (self.normal, self.place);
         let rate = (1.0 - at.theta) * self.u + at.theta * u_new;
@@ -87,37 +93,52 @@ impl Touch {
             g: -h * (at.beta * normal.d_gap + at.theta * normal.d_rate) * nn,
             ..Outcome::default()
         };
+        let mut excess = Vec3::zeros();
         if let Some(friction) = &law.friction {
+            let (s_trial, slip) = (at.s_base + at.beta * (u_new - u_n * n), rate - rate_n * n);
             let brush = friction.eval(&Trial {
                 s: self.s,
-                s_trial: at.s_base + at.beta * (u_new - u_n * n),
-                slip: rate - rate_n * n,
+                s_trial,
+                slip,
                 elapsed: at.elapsed,
                 normal_force: normal.force + law.normal.adhesion,
             });
             out.law += brush.force;
             out.s = brush.s;
             out.sticks = brush.sticks;
-            // A slip force that turns by more than 90° between two passes would cycle for ever: take the stick line.
-            let friction_before = self.out.law - n * n.dot(&self.out.law);
-            let turned = !brush.sticks && brush.force.dot(&friction_before) < 0.0;
-            let plane = Mat3::identity() - nn;
-            out.g += if turned {
-                h * at.beta * (friction.stiffness + friction.damping / at.elapsed) * plane
+            out.g += h * at.theta * friction.viscous * plane_of(&n);
+            out.turns = self.out.turns + u8::from(self.has_turned(&brush));
+            if out.turns == 0 || brush.direction == Vec3::zeros() {
+                out.g += h * at.beta * brush.calc_tangent_matrix(&n);
+            } else if out.turns > self.out.turns && out.turns == 1 {
+                let spring = friction.stiffness + friction.damping / at.elapsed;
+                out.g += h * at.beta * spring * plane_of(&n);
+                let unbounded = friction.damping / at.elapsed * self.s - spring * s_trial;
+                excess = unbounded - friction.viscous * slip - brush.force;
             } else {
-                h * at.beta * brush.calc_tangent_matrix(&n)
-            };
-            out.g += h * at.theta * friction.viscous * plane;
+                out.g += h * at.beta * brush.tangent * plane_of(&n);
+            }
         }
-        out.line = out.law + out.g * (u_new - self.u) / h;
+        out.line = out.law + excess + out.g * (u_new - self.u) / h;
         out.force = out.law;
         out
+    }
+
+    /// Whether a force on its bound has turned by more than 90° since the last pass.
+    fn has_turned(&self, brush: &friction::Brush) -> bool {
+        let before = self.out.law - self.normal * self.normal.dot(&self.out.law);
+        brush.direction != Vec3::zeros() && brush.force.dot(&before) < 0.0
     }
 
     /// Lever arms do not matter here: the relative velocity of the two material points.
     fn relative_velocity(ws: &Workspace, model: &Model, body_a: usize, body_b: usize, point: &Vec3) -> Vec3 {
         ws.vel_at(model, body_b, point) - ws.vel_at(model, body_a, point)
     }
+}
+
+/// The projector on the plane normal to `n`.
+fn plane_of(n: &Vec3) -> Mat3 {
+    Mat3::identity() - n * n.transpose()
 }
 
 /// Speculative distance: a point counts if it may touch within the step. It moves at most this much.
