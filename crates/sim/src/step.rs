@@ -61,6 +61,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
 pub(crate) fn begin(model: &Model, state: &State, ws: &mut Workspace) {
     ws.frames_start.copy_from_slice(&ws.frames);
     ws.q_start.copy_from_slice(&state.q);
+    ws.queries_start = ws.detector.narrow_count();
     for i in 0..model.vehicles.len() {
         ws.base_start[i] = ws.kin[i].vel[0];
     }
@@ -77,7 +78,7 @@ pub(crate) fn finish(model: &Model, state: &mut State, ws: &mut Workspace) {
     state.steps += 1;
     state.time = state.steps as f64 * model.step;
     state.work.steps += 1;
-    state.work.contact_queries = ws.detector.narrow_count();
+    state.work.contact_queries += ws.detector.narrow_count() - ws.queries_start;
 }
 
 /// Forces from outside on every body, about its vehicle's anchor.

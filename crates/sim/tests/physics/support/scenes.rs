@@ -4,7 +4,7 @@ use super::{Setup, block, bristle, joint, linear, link, robot, shape, spec, twis
 use contact::Shape;
 use multibody::{JointKind, Tree};
 use sim::{Actuator, ActuatorKind, Base, Command, ModelSpec, PairLaw, ShapeSpec, World};
-use spatial::{Pose, Rot, Vec3};
+use spatial::{Pose, Rot, Twist, Vec3};
 
 /// Half the edges of the usual block, m.
 pub(crate) const BLOCK: [f64; 3] = [0.1, 0.1, 0.05];
@@ -74,13 +74,23 @@ fn finger_drive(coordinate: usize) -> Actuator {
     Actuator { name: format!("finger{coordinate}"), kind }
 }
 
-/// Fingers a millimetre off the box and closing; gripper and box tumble together, the box a little faster.
-pub(crate) fn start_gripper(world: &mut World) {
+/// Base twists of gripper and box at the start: tumbling together, the box a little faster.
+pub(crate) fn gripper_twists() -> [Twist; 2] {
+    [twist([0.05, 0.1, -0.03], [0.0; 3]), twist([0.06, 0.1, -0.02], [0.03, 0.01, 0.005])]
+}
+
+/// Fingers a millimetre off the box and closing, everything else at rest.
+pub(crate) fn place_gripper(world: &mut World) {
     let state = world.state_mut();
     state.bases[1] = Pose::translation(0.0, 0.0, 0.3);
-    state.q.fill(0.029);
+    state.q[..2].fill(0.029);
     state.commands.fill(Command { position: 0.04, ..Command::default() });
-    world.set_base_twists(&[twist([0.05, 0.1, -0.03], [0.0; 3]), twist([0.06, 0.1, -0.02], [0.03, 0.01, 0.005])]);
+}
+
+/// Fingers closing on a box that tumbles with the gripper.
+pub(crate) fn start_gripper(world: &mut World) {
+    place_gripper(world);
+    world.set_base_twists(&gripper_twists());
 }
 
 /// The gripper's world at its start.
