@@ -3,6 +3,7 @@
 //! Exit status: 0 as expected; 1 an expectation failed; 2 usage; 3 bad input; 4 diverged.
 
 mod check;
+mod live;
 mod new;
 mod progress;
 mod run;

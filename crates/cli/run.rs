@@ -1,15 +1,16 @@
 //! `softdock run FILE`: the main job.
 
-use crate::Status;
 use crate::progress::Progress;
 use crate::summary::{self, Clock};
+use crate::{Status, live};
 use anyhow::Context;
-use softdock::record::{Meta, OutputFolder, Probe, Recorder, RecorderPlan, Scene, SceneVehicle};
-use softdock::record::{ChannelSpec, Log, Plot};
-use softdock::scenario::outcome::{Judge, Outcome, check_expectations};
+use softdock::record::{self, ChannelSpec, Log, Meta, OutputFolder, Plot, Probe, Recorder, RecorderPlan, SampleSink};
+use softdock::record::{Scene, SceneVehicle, Trail};
+use softdock::scenario::outcome::{Judge, check_expectations};
 use softdock::scenario::spec::Strategy;
 use softdock::scenario::{self, Mission};
 use softdock::sim::{Observer, StepError, World};
+use softdock::spatial::Vec3;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -35,12 +36,12 @@ pub(crate) struct Arguments {
     no_rrd: bool,
     /// Stream to a running Rerun viewer as the run goes
     #[cfg(feature = "rerun")]
-    #[arg(long)]
-    live: bool,
+    #[arg(long, value_name = "URL", num_args = 0..=1, default_missing_value = "rerun+http://127.0.0.1:9876/proxy")]
+    pub(crate) live: Option<String>,
     /// Open a Rerun viewer and stream to it
     #[cfg(feature = "rerun")]
-    #[arg(long)]
-    spawn: bool,
+    #[arg(long, conflicts_with = "live")]
+    pub(crate) spawn: bool,
     /// No progress bar and no table
     #[arg(long, short)]
     quiet: bool,
@@ -53,8 +54,8 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let folder = OutputFolder::create(&target)?;
     let scene = scene(&mission);
     let plan = recorder_plan(&mission, &scene);
-    let mut sink = live_sink(arguments, &mission, &scene)?;
-    let mut recorder = Recorder::new(&mission.world, plan, sink.as_mut().map(|s| s.as_sample_sink()));
+    let mut viewer = live::open(arguments, &plan, &mission, &scene)?;
+    let mut recorder = Recorder::new(&mission.world, plan, viewer.as_mut().map(|v| v as &mut dyn SampleSink));
     let mut judge = Judge::new(&mission);
     let mut progress = Progress::new(mission.steps, arguments.quiet);
     let started = Instant::now();
@@ -69,12 +70,13 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     }
     let log = std::mem::take(&mut recorder.log);
     drop(recorder);
-    conclude(arguments, &Finished { mission: &mission, folder, scene, clock }, log, judge, &ended)
+    let run = Finished { mission, folder, scene, clock };
+    conclude(arguments, run, log, (judge, &ended), viewer)
 }
 
 /// A run that is over.
-struct Finished<'a> {
-    mission: &'a Mission,
+struct Finished {
+    mission: Mission,
     folder: OutputFolder,
     scene: Scene,
     clock: Clock,
@@ -82,25 +84,122 @@ struct Finished<'a> {
 
 fn conclude(
     arguments: &Arguments,
-    run: &Finished<'_>,
+    run: Finished,
     mut log: Log,
-    judge: Judge,
-    ended: &Result<(), StepError>,
+    (judge, ended): (Judge, &Result<(), StepError>),
+    viewer: Option<live::Viewer>,
 ) -> anyhow::Result<Status> {
     let outcome = judge.conclude(&run.mission.world, ended);
     let verdicts = check_expectations(&run.mission.scenario.expects, &outcome);
     log.events.clone_from(&outcome.events);
-    write_files(arguments, run, &log, &outcome)?;
-    let document = summary::document(run.mission, &outcome, &verdicts);
+    let text = summary::markdown(&run.mission, &outcome, &verdicts);
+    live::finish(viewer, &outcome, &text)?;
+    write_files(arguments, &run, &log, &text)?;
+    let document = summary::document(&run.mission, &outcome, &verdicts);
     if !arguments.quiet {
-        summary::print(run.mission, &outcome, &verdicts, run.clock);
+        summary::print(&run.mission, &outcome, &verdicts, run.clock);
     }
     let place = run.folder.finish(&document)?;
     if !arguments.quiet {
-        println!("\n  {}: run.rrd (rerun {0}/run.rrd), signals.parquet, signals.svg, summary.json", place.display());
+        println!("\n  The recording is in {}; see it with: rerun {0}/run.rrd", place.display());
     }
     if ended.is_err() {
         return Ok(Status::Diverged);
     }
     Ok(if verdicts.iter().all(|v| v.met) { Status::AsExpected } else { Status::NotAsExpected })
 }
+
+fn write_files(arguments: &Arguments, run: &Finished, log: &Log, text: &str) -> anyhow::Result<()> {
+    let folder = &run.folder;
+    record::write_parquet(&folder.file("signals.parquet"), &log.meta, &log.signals)?;
+    record::write_file(&folder.file("signals.svg"), record::plot::plot_svg(log).as_bytes())?;
+    #[cfg(feature = "rerun")]
+    if !arguments.no_rrd {
+        record::rerun_sink::write_rrd(&folder.file("run.rrd"), log, &run.scene, text)?;
+    }
+    let _ = (arguments, &run.scene, text);
+    Ok(())
+}
+
+fn load(arguments: &Arguments) -> anyhow::Result<Mission> {
+    let mut overrides = arguments.set.clone();
+    overrides.extend(arguments.seed.map(|seed| format!("seed={seed}")));
+    let mut scenario = scenario::load(&arguments.file, &overrides)?;
+    if let Some(file) = &arguments.commands {
+        let file = std::path::absolute(file).with_context(|| format!("cannot find {}", file.display()))?;
+        let mapping = std::collections::BTreeMap::new();
+        scenario.strategy = Strategy::Replay(scenario::spec::Replay { file: file.display().to_string(), mapping });
+    }
+    Ok(scenario::build(&scenario)?)
+}
+
+/// What is seen: the vehicles, the close-up of the target, and the tool's trail.
+pub(crate) fn scene(mission: &Mission) -> Scene {
+    let vehicles = mission.scenario.vehicles.iter().zip(&mission.robots);
+    let mut scene = Scene {
+        vehicles: vehicles.map(|(v, robot)| SceneVehicle::from_robot(&v.name, robot)).collect(),
+        ..Scene::default()
+    };
+    if let Strategy::TrackAndGrasp(spec) = &mission.scenario.strategy {
+        let index = |name: &str| name.split_once('/').and_then(|(v, l)| scene.link_index(v, l));
+        let (tool, grapple) = (index(&spec.tool_frame), index(&spec.grapple_frame));
+        scene.close_up = grapple;
+        let trail = |name: &str, link: usize| Trail { name: name.to_owned(), link, point_l: Vec3::zeros() };
+        scene.trails.extend(tool.map(|l| trail("tool", l)));
+        scene.trails.extend(grapple.map(|l| trail("grapple point", l)));
+    }
+    scene
+}
+
+/// What is recorded.
+pub(crate) fn recorder_plan(mission: &Mission, scene: &Scene) -> RecorderPlan {
+    let scenario = &mission.scenario;
+    let patterns = scenario.output.channels.clone();
+    RecorderPlan {
+        meta: Meta {
+            scenario: scenario.name.clone(),
+            seed: scenario.seed,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            inputs: scenario::to_toml(scenario),
+            notes: Vec::new(),
+        },
+        every: mission.steps_per_sample,
+        probes: probes(mission),
+        keep: Box::new(move |name| patterns.iter().any(|p| scenario::glob_matches(p, name))),
+        links: scene.vehicles.iter().map(|v| v.links.len()).collect(),
+    }
+}
+
+/// Relative motion of tool and grapple frame.
+fn probes(mission: &Mission) -> Vec<Probe> {
+    let Strategy::TrackAndGrasp(spec) = &mission.scenario.strategy else { return Vec::new() };
+    let model = mission.world.model();
+    let frame = |name: &str| {
+        let (vehicle, link) = name.split_once('/')?;
+        let v = model.vehicle(vehicle)?;
+        Some((v, model.vehicles[v].tree.link(link)?))
+    };
+    let (Some(tool), Some(grapple)) = (frame(&spec.tool_frame), frame(&spec.grapple_frame)) else { return Vec::new() };
+    let probe = |name: &str, unit: &str, text: &str, read: fn(&World, Ends) -> f64| Probe {
+        spec: ChannelSpec::new(name, unit, Plot::Relative).described(text),
+        read: Box::new(move |world| read(world, (tool, grapple))),
+    };
+    vec![
+        probe("relative.distance", "m", "tool frame to grapple frame", |w, (a, b)| {
+            (w.link_frame(a.0, a.1).pos - w.link_frame(b.0, b.1).pos).norm()
+        }),
+        probe("relative.angle", "rad", "between the two frames", |w, (a, b)| {
+            let (a, b) = (w.link_frame(a.0, a.1).to_pose(), w.link_frame(b.0, b.1).to_pose());
+            a.rotation.angle_to(&b.rotation)
+        }),
+        probe("relative.speed", "m/s", "of the two frames' origins", |w, (a, b)| {
+            (w.link_twist(a.0, a.1).lin - w.link_twist(b.0, b.1).lin).norm()
+        }),
+        probe("relative.rate", "rad/s", "angular rate between the two buses", |w, (a, b)| {
+            (w.kinematics(a.0).vel[0].ang - w.kinematics(b.0).vel[0].ang).norm()
+        }),
+    ]
+}
+
+/// Vehicle and link of the tool and of the grapple frame.
+type Ends = ((usize, usize), (usize, usize));

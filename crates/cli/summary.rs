@@ -42,6 +42,19 @@ pub(crate) fn document(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict
     map
 }
 
+/// The summary as Markdown, for the viewer.
+pub(crate) fn markdown(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict]) -> String {
+    let mut text = format!("# {}\n\n**{}**: {}\n\n", mission.scenario.name, outcome.outcome, outcome.reason);
+    for verdict in verdicts {
+        text += &format!("- {}{}\n", if verdict.met { "" } else { "**not as expected:** " }, verdict.text);
+    }
+    text += "\n| figure | value |\n| --- | --- |\n";
+    for metric in &outcome.metrics {
+        text += &format!("| {} | {} |\n", metric.name, shown(&metric.value));
+    }
+    text
+}
+
 /// Prints the table.
 pub(crate) fn print(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict], clock: Clock) {
     println!("\n{}: {}", outcome.outcome.to_uppercase(), outcome.reason);

@@ -30,7 +30,7 @@ impl std::fmt::Debug for Probe {
 /// Who else wants every sample as it comes: a live viewer.
 pub trait SampleSink {
     /// Takes one sample.
-    fn push(&mut self, sample: &Sample<'_>);
+    fn push(&mut self, sample: &Sample<'_>) -> Result<(), RecordError>;
 }
 
 /// Samples a world into a [`Log`].
@@ -82,14 +82,27 @@ impl std::fmt::Debug for RecorderPlan {
     }
 }
 
+impl RecorderPlan {
+    /// The channels that are kept.
+    pub fn calc_channels(&self, model: &Model) -> Vec<ChannelSpec> {
+        let mut specs = self.calc_all_channels(model);
+        specs.retain(|s| (self.keep)(&s.name));
+        specs
+    }
+
+    fn calc_all_channels(&self, model: &Model) -> Vec<ChannelSpec> {
+        let mut specs = standard_channels(model, &vehicle_pairs(model));
+        specs.extend(self.probes.iter().map(|p| p.spec.clone()));
+        specs
+    }
+}
+
 impl<'a> Recorder<'a> {
     /// A recorder for a world at its start, which also feeds `live`.
     pub fn new(world: &World, plan: RecorderPlan, live: Option<&'a mut dyn SampleSink>) -> Self {
         let vehicle_pairs = vehicle_pairs(world.model());
-        let mut specs = standard_channels(world.model(), &vehicle_pairs);
-        specs.extend(plan.probes.iter().map(|p| p.spec.clone()));
-        let keep: Vec<bool> = specs.iter().map(|s| (plan.keep)(&s.name)).collect();
-        let kept = specs.into_iter().zip(&keep).filter(|(_, k)| **k).map(|(s, _)| s).collect();
+        let keep: Vec<bool> = plan.calc_all_channels(world.model()).iter().map(|s| (plan.keep)(&s.name)).collect();
+        let kept = plan.calc_channels(world.model());
         let mut log = Log::new(plan.meta, kept, plan.links.iter().sum());
         log.pairs = (0..world.model().scene.pairs().len()).map(|p| world.model().pair_name(p)).collect();
         Self {
@@ -129,7 +142,7 @@ impl<'a> Recorder<'a> {
             contacts,
         };
         if let Some(live) = &mut self.live {
-            live.push(&sample);
+            live.push(&sample)?;
         }
         let pushed = self.log.push(&sample);
         self.scratch.all = values;

@@ -5,7 +5,8 @@
 //!   τ = −b v + stop(q, v) + dry friction + Σ drives,     drive = clamp(k_p (q_ref − q) + k_d (v_ref − v) + τ_ff, ±limit)
 //!   stop = max(0, k (lower − q) − c v) below, likewise above; never pulls
 //!
-//! The stop's stiffness brings the joint to rest within about 10 mrad (1 mm) of overtravel at its full effort. Dry
+//! The stop's stiffness brings the joint to rest within about 10 mrad (1 mm) of overtravel at its full effort, up to
+//! 1e5 N·m/rad (1e6 N/m). Dry
 //! friction is the bristle of [`friction`] in one dimension, with the deflection at breakaway of 3e-4 rad or m.
 
 use friction::{Bristle, Trial};
@@ -96,13 +97,8 @@ const STOP_TIME: f64 = 0.02;
 impl Coordinate {
     /// From a joint's tags.
     pub fn from_joint(joint: &Joint, q_index: usize) -> Self {
-        let (overtravel, fallback) =
-            if joint.kind == JointKind::Revolute { (1e-2, 1e4) } else { (1e-3, 1e6) };
-        let stop_stiffness = if joint.effort_limit.is_finite() && joint.effort_limit > 0.0 {
-            joint.effort_limit / overtravel
-        } else {
-            fallback
-        };
+        let (overtravel, hardest) = if joint.kind == JointKind::Revolute { (1e-2, 1e5) } else { (1e-3, 1e6) };
+        let stop_stiffness = if joint.effort_limit > 0.0 { (joint.effort_limit / overtravel).min(hardest) } else { hardest };
         let dry = (joint.friction > 0.0).then(|| Bristle {
             mu_static: joint.friction,
             mu_kinetic: joint.friction,
