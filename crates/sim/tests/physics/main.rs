@@ -5,9 +5,11 @@
 //! `SOFTDOCK_BLESS=1 cargo test -p softdock-sim -- table` writes them anew.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod convergence;
 mod determinism;
 mod free_motion;
 mod friction;
 mod momentum;
+mod restitution;
 mod support;
 mod torque_free;

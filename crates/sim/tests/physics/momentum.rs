@@ -2,7 +2,7 @@
 //!
 //! The account is the sum over links ([`sim::MomentumAudit`]), never a conserved state.
 
-use crate::support::scenes::{box_hits_plate, gripper, gripper_spec, start_gripper};
+use crate::support::scenes::{box_hits_plate, driven_arm, gripper, gripper_spec, start_gripper};
 use crate::support::{ALL, Setup, arm7, block, free_world, run, spec, twist, world};
 use sim::{Actuator, ActuatorKind, Base, Command, Energy, Environment, MomentumAudit, World};
 use spatial::Vec3;
@@ -27,20 +27,6 @@ fn idle(_: f64, _: &mut [Command]) {}
 fn report(name: &str, audit: &MomentumAudit) {
     println!("{name}: linear {:.1e}, angular {:.1e}", audit.linear_drift, audit.angular_drift);
     assert!(audit.linear_drift <= DRIFT && audit.angular_drift <= DRIFT);
-}
-
-/// The free-floating arm with a drive on every joint.
-fn driven_arm(setup: &Setup) -> World {
-    let mut spec = spec(vec![(arm7(), Base::Free)], setup);
-    spec.actuators = (0..7)
-        .map(|coordinate| {
-            let kind = ActuatorKind::JointDrive { coordinate, stiffness: 40.0, damping: 8.0, limit: 30.0 };
-            Actuator { name: format!("drive{coordinate}"), kind }
-        })
-        .collect();
-    let mut world = world(spec);
-    world.set_base_twists(&[twist([0.01, -0.02, 0.015], [0.002, 0.001, -0.003])]);
-    world
 }
 
 /// All joints swing, each with its own period of some tens of seconds.

@@ -1,7 +1,7 @@
 //! The torque-free triaxial body against Jacobi's elliptic functions: attitude to a microradian after 1,000 s.
 
 use crate::support::elliptic::TorqueFree;
-use crate::support::{ALL, Setup, free_world, link, robot, run};
+use crate::support::{Setup, free_world, link, robot, run};
 use multibody::Inertial;
 use sim::{Integrator, World};
 use spatial::{Mat3, Pose, Rot, Twist, Vec3};
@@ -62,6 +62,11 @@ fn simulate(start: Start, setup: &Setup, seconds: f64) -> f64 {
     attitude_error(&world, &rot_lp, rot_wp.matrix(), &case)
 }
 
+/// Attitude error of the first start, for the table of orders, rad.
+pub(crate) fn error_of_first_start(setup: &Setup, seconds: f64) -> f64 {
+    simulate(starts()[0], setup, seconds)
+}
+
 #[test]
 fn elliptic_motion_satisfies_eulers_equations_and_turns_with_its_own_rate() {
     for (angle, spin, phase) in starts() {
@@ -86,16 +91,5 @@ fn attitude_after_1000_s_is_within_a_microradian() {
         let error = simulate(start, &Setup::new(Integrator::RungeKutta4), 1000.0);
         println!("L at {:.3} rad, {:.1} rad/s: attitude error {error:.1e} rad", start.0, start.1);
         assert!(error <= 1e-6);
-    }
-}
-
-#[test]
-fn attitude_converges_with_the_integrators_order() {
-    for (integrator, order) in ALL.into_iter().zip([1.0, 2.0, 1.0, 4.0]) {
-        let steps = if order == 4.0 { [4e-2, 2e-2] } else { [4e-3, 2e-3] };
-        let errors = steps.map(|h| simulate(starts()[0], &Setup::new(integrator).step(h), 4.0));
-        let measured = (errors[0] / errors[1]).log2();
-        println!("{integrator:?}: {:.1e} {:.1e} order {measured:.2}", errors[0], errors[1]);
-        assert!((measured - order).abs() < 0.3);
     }
 }

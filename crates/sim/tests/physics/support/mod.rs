@@ -2,6 +2,7 @@
 
 pub(crate) mod elliptic;
 pub(crate) mod scenes;
+pub(crate) mod table;
 
 use contact::{Normal, NormalLaw, Shape};
 use friction::Bristle;

@@ -1,7 +1,7 @@
 //! Scenes with contact that several topics look at.
 
-use super::{Setup, block, bristle, joint, linear, link, robot, shape, spec, twist, world};
-use contact::Shape;
+use super::{Setup, arm7, block, bristle, joint, linear, link, robot, shape, spec, twist, world};
+use contact::{Normal, NormalLaw, Shape};
 use multibody::{JointKind, Tree};
 use sim::{Actuator, ActuatorKind, Base, Command, ModelSpec, PairLaw, ShapeSpec, World};
 use spatial::{Pose, Rot, Twist, Vec3};
@@ -104,5 +104,59 @@ pub(crate) fn gripper(setup: &Setup) -> World {
 pub(crate) fn box_hits_plate(setup: &Setup) -> World {
     let mut world = world(box_hits_plate_spec(setup));
     start_box_hits_plate(&mut world);
+    world
+}
+
+/// The free-floating arm with a drive on every joint.
+pub(crate) fn driven_arm(setup: &Setup) -> World {
+    let mut spec = spec(vec![(arm7(), Base::Free)], setup);
+    spec.actuators = (0..7)
+        .map(|coordinate| {
+            let kind = ActuatorKind::JointDrive { coordinate, stiffness: 40.0, damping: 8.0, limit: 30.0 };
+            Actuator { name: format!("drive{coordinate}"), kind }
+        })
+        .collect();
+    let mut world = world(spec);
+    world.set_base_twists(&[twist([0.01, -0.02, 0.015], [0.002, 0.001, -0.003])]);
+    world
+}
+
+/// A ball of 1 kg, its lowest point `gap` above the half-space z < 0 (its origin there), moving at `speed` along z.
+pub(crate) fn flying_ball(normal: Normal, gap: f64, speed: f64, setup: &Setup) -> World {
+    let ball = robot(vec![link("ball", 1.0, Vec3::zeros(), Vec3::repeat(4e-3))], Vec::new());
+    let mut spec = spec(vec![(ball, Base::Free)], setup);
+    let floor = shape("floor", None, Shape::HalfSpace);
+    let pose_ls = Pose::translation(0.0, 0.0, -0.1);
+    spec.shapes = vec![ShapeSpec { pose_ls, ..floor }, shape("ball", Some(0), Shape::Ball { radius: 0.1 })];
+    spec.pairs = vec![([0, 1], PairLaw { normal, friction: None })];
+    let mut world = world(spec);
+    world.state_mut().bases[0] = Pose::translation(0.0, 0.0, gap);
+    world.set_base_twists(&[twist([0.0; 3], [0.0, 0.0, speed])]);
+    world
+}
+
+const DOWN: [f64; 3] = [0.0, 0.0, -9.81];
+
+/// The ball in gravity, `depth` deep, at rest: it swings about its equilibrium.
+pub(crate) fn pressed_ball(normal: Normal, depth: f64, setup: &Setup) -> World {
+    flying_ball(normal, -depth, 0.0, &setup.gravity(DOWN.into()))
+}
+
+/// The ball in gravity, dropped from `gap`.
+pub(crate) fn bouncing_ball(normal: Normal, gap: f64, setup: &Setup) -> World {
+    flying_ball(normal, gap, 0.0, &setup.gravity(DOWN.into()))
+}
+
+/// A block of 1 kg that cannot turn, at rest in z on one point, moving at `speed` along x.
+pub(crate) fn sliding_block(law: PairLaw, speed: f64, setup: &Setup) -> World {
+    let base = Base::Only([false, false, false, true, false, true]);
+    let tree = robot(vec![link("block", 1.0, Vec3::zeros(), Vec3::repeat(4e-3))], Vec::new());
+    let mut spec = spec(vec![(tree, base)], &setup.gravity(DOWN.into()));
+    spec.shapes = vec![shape("floor", None, Shape::HalfSpace), shape("foot", Some(0), Shape::Ball { radius: 0.1 })];
+    spec.pairs = vec![([0, 1], law)];
+    let mut world = world(spec);
+    let NormalLaw::SpringDamper { stiffness, .. } = law.normal.law else { panic!("a linear law") };
+    world.state_mut().bases[0] = Pose::translation(0.0, 0.0, 0.1 - 9.81 / stiffness);
+    world.set_base_twists(&[twist([0.0; 3], [speed, 0.0, 0.0])]);
     world
 }
