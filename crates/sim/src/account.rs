@@ -4,6 +4,8 @@
 //!
 //!   p = Σ m_l v_l,    L = Σ (x_l × m_l v_l + R I R^T ω_l)      about W's origin
 //!   drift = |Δ − external impulse| / largest of Σ m‖v‖ (linear), Σ ‖L_link‖ (angular), in the frame of the centre of mass
+//!
+//! A single link does not move in that frame: its own momentum about W's origin is the scale then.
 
 use crate::model::Base;
 use crate::world::World;
@@ -68,14 +70,15 @@ impl MomentumAudit {
 }
 
 fn calc_link_sums(world: &World) -> LinkSums {
-    let (mut mass, mut first, mut total) = (0.0, Vec3::zeros(), Wrench::default());
+    let (mut links, mut mass, mut first, mut total) = (0, 0.0, Vec3::zeros(), Wrench::default());
     for_each_link(world, |m, x, momentum| {
+        links += u32::from(m > 0.0);
         mass += m;
         first += m * x;
         total += Wrench::new(momentum.moment + x.cross(&momentum.force), momentum.force);
     });
-    if mass == 0.0 {
-        return LinkSums { total, speed: 0.0, spin: 0.0 };
+    if links <= 1 {
+        return LinkSums { total, speed: total.force.norm(), spin: total.moment.norm() };
     }
     let (centre, drift) = (first / mass, total.force / mass);
     let (mut speed, mut spin) = (0.0, 0.0);

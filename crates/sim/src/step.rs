@@ -42,6 +42,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     begin(model, state, ws);
     if scheme == Scheme::ImplicitMidpoint {
         drift_to_midpoint(model, state, ws, 0.5 * h);
+        state.time += 0.5 * h;
     }
     calc_external(model, state, ws);
     calc_bias(model, state, ws, false);
@@ -263,7 +264,8 @@ fn relative_gain(model: &Model, ws: &Workspace, touch: &Touch) -> Vec3 {
     at(touch.body_b) - at(touch.body_a)
 }
 
-/// Momentum and accounts: every contact gives the same numbers to both sides.
+/// Momentum and accounts: every contact gives the same numbers to both sides. Works are taken at the mean velocity of the
+/// step, so that they sum to the change of kinetic energy; what an implicit step damps is booked where it damps it.
 pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: f64) {
     for touch in &ws.touches {
         let impulse = h * touch.out.force;
@@ -272,12 +274,12 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         add_impulse(model, state, ws, touch.body_a, &touch.point, &Wrench::new(-moment, -impulse));
         let on_b = Wrench::new(moment + touch.point.cross(&error), impulse + error);
         add_impulse(model, state, ws, touch.body_b, &touch.point, &on_b);
-        let u_new = touch.u + relative_gain(model, ws, touch);
-        state.account.contact_work += impulse.dot(&u_new);
+        let u_mean = touch.u + 0.5 * relative_gain(model, ws, touch);
+        state.account.contact_work += impulse.dot(&u_mean);
     }
     for (i, _) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
         let force = &ws.coordinate_forces[i];
-        let moved = h * (state.v[i] + ws.v_gain[i]);
+        let moved = h * (state.v[i] + 0.5 * ws.v_gain[i]);
         state.account.actuator_work += force.driven * moved;
         state.account.passive_joint_work += (force.effort - force.driven) * moved;
     }
