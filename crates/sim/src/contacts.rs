@@ -145,7 +145,7 @@ fn plane_of(n: &Vec3) -> Mat3 {
 fn update_reach(model: &Model, ws: &mut Workspace, h: f64) {
     for (body, &(vehicle, local)) in model.owners.iter().enumerate() {
         let radius = model.collider_radius[body];
-        if radius == 0.0 {
+        if radius < 0.0 {
             continue;
         }
         let kin = &ws.kin[vehicle];

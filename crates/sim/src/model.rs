@@ -156,7 +156,7 @@ pub struct Model {
     pub integrator: Integrator,
     /// Step, s.
     pub step: f64,
-    /// Bounding radius of each body's colliders about its origin, m.
+    /// Bounding radius of each body's colliders about its origin, m; negative where it has none.
     pub(crate) collider_radius: Vec<f64>,
     pub(crate) one_sided_force: Vec3,
 }
@@ -295,7 +295,7 @@ fn collider(vehicles: &[Vehicle], shape: &ShapeSpec, world: usize) -> Collider {
 }
 
 fn calc_collider_radius(scene: &Scene, n_bodies: usize) -> Vec<f64> {
-    let mut radius = vec![0.0_f64; n_bodies];
+    let mut radius = vec![-1.0_f64; n_bodies];
     for collider in scene.colliders() {
         let reach = collider.pose_bs.translation.vector.norm() + calc_bounding_radius(&collider.shape);
         radius[collider.body] = radius[collider.body].max(reach);

@@ -230,14 +230,13 @@ fn classical_gain(gain: &Twist, base: &Twist, h: f64) -> Twist {
 
 /// Evaluates all laws at the solution; where a line missed, draws the next one. `true` if none did.
 fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
-    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    let mut check = PairCheck::default();
     for i in 0..ws.touches.len() {
         let mut touch = ws.touches[i];
         let gain = relative_gain(model, ws, &touch);
         let force = touch.out.line - touch.out.g * gain / h;
         let next = touch.eval(&model.laws[touch.pair as usize], &(touch.u + gain), h);
-        worst = worst.max((next.law - force).norm());
-        largest = largest.max(next.law.norm());
+        check.add(touch.pair, (next.law - force).norm(), next.law.norm());
         touch.out = next;
         touch.out.force = force;
         ws.touches[i] = touch;
@@ -252,7 +251,31 @@ fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
         ws.coordinate_forces[i] = crate::actuator::CoordinateForce { effort: on_line, ..law };
         ws.coordinate_lines[i] = (law.effort + law.slope * ws.v_gain[i], law.slope);
     }
-    joints_hold && worst <= LAW_TOLERANCE * largest + FORCE_FLOOR
+    joints_hold && check.holds()
+}
+
+/// Compares lines with laws, pair by pair: a miss counts against the largest force of its own pair, so that a press
+/// elsewhere in the world does not loosen a grasp.
+#[derive(Default)]
+struct PairCheck {
+    pair: u32,
+    worst: f64,
+    largest: f64,
+    missed: bool,
+}
+
+impl PairCheck {
+    fn add(&mut self, pair: u32, miss: f64, size: f64) {
+        if pair != self.pair {
+            *self = Self { pair, missed: !self.holds(), ..Self::default() };
+        }
+        self.worst = self.worst.max(miss);
+        self.largest = self.largest.max(size);
+    }
+
+    fn holds(&self) -> bool {
+        !self.missed && self.worst <= LAW_TOLERANCE * self.largest + FORCE_FLOOR
+    }
 }
 
 /// Gain of the relative velocity of a touch's material points.

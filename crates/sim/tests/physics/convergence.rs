@@ -12,6 +12,9 @@ const GRAVITY: f64 = 9.81;
 /// Errors below are round-off, not the integrator's.
 const ROUND_OFF: f64 = 1e-11;
 
+/// Error of a run with a setup, over so many seconds.
+type ErrorOf = Box<dyn Fn(&Setup, f64) -> f64>;
+
 /// What is solved, how long, with which steps, and how far from the truth it ends.
 struct Problem {
     name: &'static str,
@@ -20,7 +23,7 @@ struct Problem {
     coarsest: f64,
     /// Orders that the table must show, by integrator; zero where the kinks of the law decide.
     orders: [f64; 4],
-    error: Box<dyn Fn(&Setup, f64) -> f64>,
+    error: ErrorOf,
 }
 
 const SMOOTH: [f64; 4] = [1.0, 2.0, 1.0, 4.0];
@@ -34,12 +37,7 @@ fn finish(mut world: World, seconds: f64) -> World {
 }
 
 /// Error against Runge–Kutta at the step `fine`, by an observable of several numbers.
-fn against_reference(
-    build: fn(&Setup) -> World,
-    observe: fn(&World) -> Vec<f64>,
-    seconds: f64,
-    fine: f64,
-) -> Box<dyn Fn(&Setup, f64) -> f64> {
+fn against_reference(build: fn(&Setup) -> World, observe: fn(&World) -> Vec<f64>, seconds: f64, fine: f64) -> ErrorOf {
     let reference = observe(&finish(build(&Setup::new(Integrator::RungeKutta4).step(fine)), seconds));
     Box::new(move |setup, seconds| {
         let got = observe(&finish(build(setup), seconds));
@@ -48,11 +46,7 @@ fn against_reference(
 }
 
 /// Error against a closed form at the end.
-fn against_exact(
-    build: fn(&Setup) -> World,
-    observe: fn(&World) -> f64,
-    exact: f64,
-) -> Box<dyn Fn(&Setup, f64) -> f64> {
+fn against_exact(build: fn(&Setup) -> World, observe: fn(&World) -> f64, exact: f64) -> ErrorOf {
     Box::new(move |setup, seconds| (observe(&finish(build(setup), seconds)) - exact).abs())
 }
 

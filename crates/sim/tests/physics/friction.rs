@@ -4,7 +4,7 @@ use crate::support::scenes::block_on_slope;
 use crate::support::{ALL, Setup, bristle, joint, linear, link, robot, run, shape, spec, world};
 use contact::Shape;
 use multibody::JointKind;
-use sim::{Actuator, ActuatorKind, Base, Integrator, PairLaw, ShapeSpec, World};
+use sim::{Actuator, ActuatorKind, Base, Integrator, ModelSpec, PairLaw, ShapeSpec, World};
 use spatial::{Pose, Vec3};
 
 const MU: f64 = 0.4;
@@ -120,7 +120,7 @@ enum Puller {
 }
 
 /// A fixed rail, a massless carriage on x and a 1 kg block that slides on the carriage in z, resting on the floor.
-fn pulled_block(integrator: Integrator, puller: Puller) -> World {
+fn pulled_block_spec(integrator: Integrator, puller: Puller) -> ModelSpec {
     let mut carriage = link("carriage", 0.0, Vec3::zeros(), Vec3::zeros());
     carriage.inertial = None;
     let rail = multibody::LinkDescription { name: "rail".to_owned(), ..carriage.clone() };
@@ -143,7 +143,11 @@ fn pulled_block(integrator: Integrator, puller: Puller) -> World {
         Puller::Effort => ActuatorKind::JointEffort { coordinate: 0, limit },
     };
     spec.actuators = vec![Actuator { name: "spring".to_owned(), kind }];
-    world(spec)
+    spec
+}
+
+fn pulled_block(integrator: Integrator, puller: Puller) -> World {
+    world(pulled_block_spec(integrator, puller))
 }
 
 /// Spring of 100 N/m pulled at 0.01 m/s for 30 s: when the speed passes 5 mm/s, the largest force, and the stops.
@@ -186,6 +190,27 @@ fn block_pulled_by_a_spring_breaks_away_and_cycles_as_coulomb_says() {
         assert!((peak - 4.024).abs() < 1.5e-3);
         assert!(stops.contains(&counted));
     }
+}
+
+#[test]
+fn laws_are_met_for_a_light_block_beside_a_heavy_one() {
+    // A press of 100 t stands beside: were the laws checked against the largest force of the world, the stick line of the
+    // light block would overrun its cone by up to 1,000 N.
+    let (integrator, puller) = (Integrator::ImplicitEuler, Puller::Effort);
+    let mut spec = pulled_block_spec(integrator, puller);
+    let half = Vec3::new(0.1, 0.1, 0.05);
+    let press = sim::VehicleSpec {
+        name: "press".to_owned(),
+        tree: crate::support::block(1e5, half),
+        base: Base::Only([false, false, false, true, true, true]),
+    };
+    spec.vehicles.push(press);
+    spec.shapes.push(shape("press", Some(1), Shape::Cuboid { half_extents: half }));
+    spec.pairs.push(([0, 2], PairLaw { normal: linear(1e9, 1e6), friction: Some(bristle(MU, 1e9, 0.0)) }));
+    let mut beside = world(spec);
+    beside.state_mut().bases[1] = Pose::translation(5.0, 0.0, 0.0);
+    let alone = pull(&mut pulled_block(integrator, puller), puller);
+    assert_eq!(pull(&mut beside, puller), alone);
 }
 
 #[test]

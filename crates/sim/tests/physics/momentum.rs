@@ -74,6 +74,12 @@ fn gripper_holding_a_box_keeps_momentum() {
         let mut world = gripper(&Setup::new(integrator));
         let audit = audit(&mut world, 10_000, 10, idle);
         report(&format!("{integrator:?}, grasp"), &audit);
+        let work = world.state().work;
+        println!(
+            "    {:.3} solves per step, {} steps unconverged",
+            work.solves as f64 / work.steps as f64,
+            work.unconverged_steps
+        );
         assert_eq!(world.touches().filter(|t| t.sticks).count(), 8, "eight points hold the box by friction");
     }
 }
