@@ -1,1 +1,41 @@
-//! Shapes, contact points with identity, and normal laws, on parry3d.
+//! Shapes, contact points with identity, and normal laws, on parry3d (f64).
+//!
+//! A [`Scene`] is what may touch what: colliders, fixed in bodies, and the pairs of them that are looked at. A
+//! [`Detector`] finds, for the poses of the bodies, the [`ContactPoint`]s of each pair:
+//!
+//!   gap = n · (b − a),      n: unit, from A to B;  a, b: witness points on the two surfaces;  gap < 0: penetration
+//!
+//! # A pure function of the poses
+//!
+//! Nothing is warm-started and nothing remembered, so the points are the same whatever was asked before: snapshots,
+//! Runge–Kutta stages and replays see the same contact. Balls, and boxes on planes, are answered in closed form; all
+//! other pairs by parry3d's manifold generators from a cold start.
+//!
+//! # Identity
+//!
+//! [`ContactPoint::feature`] holds the pair of features (vertex, edge, face) that parry3d names, mixed with the part of a
+//! compound or the triangle of a mesh they belong to. Where one manifold names a pair of features twice, an ordinal along
+//! A tells them apart. Where features say nothing (a ball that rolls) it is constant, and the nearest position decides.
+//!
+//! # Limits
+//!
+//! Meshes are surfaces: a body that is wholly inside one touches nothing. Penetration is meant to be small beside the
+//! shapes: deep and concentric pairs give a finite unit normal, but not always the shortest way out. Two half-spaces
+//! never touch.
+
+mod analytic;
+mod detector;
+mod error;
+mod glob;
+mod manifold;
+mod normal;
+mod reduce;
+mod scene;
+mod shape;
+
+pub use detector::Detector;
+pub use error::ContactError;
+pub use glob::glob_matches;
+pub use normal::{Normal, NormalForce, NormalLaw};
+pub use scene::{ContactPoint, Scene};
+pub use shape::{Collider, Shape};

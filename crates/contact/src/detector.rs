@@ -1,0 +1,176 @@
+//! Broad phase, then one closed form or manifold per pair of parts.
+//!
+//! Broad phase: boxes about the parts in W axes, grown by each body's reach, swept along x (Cohen et al. 1995); it is
+//! stateless, so the points do not depend on what was asked before.
+
+use crate::analytic::{Raw, ball_ball, plane_ball, plane_cuboid, swapped};
+use crate::manifold::{ManifoldBuffer, mix};
+use crate::reduce::reduce;
+use crate::scene::{ContactPoint, NONE, Part, Scene, Solid};
+use parry3d_f64::shape::{Ball, Shape};
+use spatial::{Frame, Vec3};
+
+/// Distance, m, at which points are reported although nothing moves.
+const SKIN: f64 = 1e-4;
+
+/// Scratch of the detection; holds nothing that a result depends on.
+pub struct Detector {
+    boxes: Vec<Bounds>,
+    order: Vec<u32>,
+    candidates: Vec<u32>,
+    raw: Vec<Raw>,
+    manifolds: ManifoldBuffer,
+    narrow: u64,
+}
+
+/// A box in W axes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Bounds {
+    low: Vec3,
+    high: Vec3,
+}
+
+impl std::fmt::Debug for Detector {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Detector").field("narrow", &self.narrow).finish_non_exhaustive()
+    }
+}
+
+impl Detector {
+    /// Room for a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let n = scene.colliders().len();
+        Self {
+            boxes: vec![Bounds::default(); n],
+            order: (0..n as u32).collect(),
+            candidates: Vec::with_capacity(scene.pairs().len()),
+            raw: Vec::with_capacity(64),
+            manifolds: ManifoldBuffer::default(),
+            narrow: 0,
+        }
+    }
+
+    /// Pairs tested closely so far.
+    pub fn narrow_count(&self) -> u64 {
+        self.narrow
+    }
+
+    /// Points of all pairs nearer than the reaches of their two bodies together.
+    ///
+    /// `poses`: W←body, by body index; `reach`: how far any point of a body may move within the step, m. `out` is
+    /// overwritten, sorted by pair and feature.
+    pub fn detect(&mut self, scene: &Scene, poses: &[Frame], reach: &[f64], out: &mut Vec<ContactPoint>) {
+        out.clear();
+        self.update_boxes(scene, poses, reach);
+        self.sweep(scene);
+        for i in 0..self.candidates.len() {
+            let pair = self.candidates[i];
+            let [a, b] = scene.pairs()[pair as usize];
+            let (body_a, body_b) = (scene.colliders()[a].body, scene.colliders()[b].body);
+            let margin = reach[body_a] + reach[body_b] + SKIN;
+            self.narrow += 1;
+            self.find(&scene.parts[a], &poses[body_a], &scene.parts[b], &poses[body_b], margin);
+            reduce(&mut self.raw);
+            self.raw.sort_unstable_by_key(|p| p.feature);
+            out.extend(self.raw.iter().map(|p| ContactPoint {
+                pair,
+                feature: p.feature,
+                point_a_w: p.point_a,
+                point_b_w: p.point_a + p.gap * p.normal,
+                normal_w: p.normal,
+                gap: p.gap,
+            }));
+        }
+    }
+
+    fn update_boxes(&mut self, scene: &Scene, poses: &[Frame], reach: &[f64]) {
+        for (i, collider) in scene.colliders().iter().enumerate() {
+            let grow = Vec3::repeat(reach[collider.body] + SKIN);
+            let mut bounds = Bounds { low: Vec3::repeat(f64::INFINITY), high: Vec3::repeat(f64::NEG_INFINITY) };
+            for part in &scene.parts[i] {
+                let frame = &poses[collider.body] * &part.frame_bp;
+                let centre = frame.point(&part.centre);
+                let half = if part.half.x.is_finite() { frame.rot.abs() * part.half } else { part.half };
+                bounds.low = bounds.low.inf(&(centre - half - grow));
+                bounds.high = bounds.high.sup(&(centre + half + grow));
+            }
+            self.boxes[i] = bounds;
+        }
+    }
+
+    /// Pairs whose boxes overlap, in the order of the scene's pairs.
+    fn sweep(&mut self, scene: &Scene) {
+        self.candidates.clear();
+        let (boxes, n) = (&self.boxes, self.boxes.len());
+        self.order
+            .sort_unstable_by(|i, j| boxes[*i as usize].low.x.total_cmp(&boxes[*j as usize].low.x).then(i.cmp(j)));
+        for (at, &i) in self.order.iter().enumerate() {
+            let own = &boxes[i as usize];
+            for &j in &self.order[at + 1..] {
+                let other = &boxes[j as usize];
+                if other.low.x > own.high.x {
+                    break;
+                }
+                let apart = own.low.y > other.high.y
+                    || other.low.y > own.high.y
+                    || own.low.z > other.high.z
+                    || other.low.z > own.high.z;
+                let pair = scene.pair_of[(i.min(j) as usize) * n + i.max(j) as usize];
+                if !apart && pair != NONE {
+                    self.candidates.push(pair);
+                }
+            }
+        }
+        self.candidates.sort_unstable();
+    }
+
+    fn find(&mut self, parts_a: &[Part], pose_a: &Frame, parts_b: &[Part], pose_b: &Frame, margin: f64) {
+        self.raw.clear();
+        for (i, a) in parts_a.iter().enumerate() {
+            let frame_a = pose_a * &a.frame_bp;
+            for (j, b) in parts_b.iter().enumerate() {
+                let frame_b = pose_b * &b.frame_bp;
+                let start = self.raw.len();
+                self.find_parts((a, &frame_a), (b, &frame_b), margin);
+                self.raw[start..].iter_mut().for_each(|p| p.feature = mix(p.feature, i as u32, j as u32));
+            }
+        }
+    }
+
+    fn find_parts(&mut self, (a, frame_a): (&Part, &Frame), (b, frame_b): (&Part, &Frame), margin: f64) {
+        let one = match (&a.solid, &b.solid) {
+            (Solid::Ball(ra), Solid::Ball(rb)) => ball_ball(&frame_a.pos, *ra, &frame_b.pos, *rb),
+            (Solid::HalfSpace(_), Solid::Ball(r)) => plane_ball(frame_a, &frame_b.pos, *r),
+            (Solid::Ball(r), Solid::HalfSpace(_)) => swapped(&plane_ball(frame_b, &frame_a.pos, *r)),
+            (Solid::HalfSpace(_), Solid::Cuboid(half, _)) => {
+                return plane_cuboid(frame_a, frame_b, half, margin, &mut self.raw);
+            }
+            (Solid::Cuboid(half, _), Solid::HalfSpace(_)) => {
+                let start = self.raw.len();
+                plane_cuboid(frame_b, frame_a, half, margin, &mut self.raw);
+                self.raw[start..].iter_mut().for_each(|p| *p = swapped(p));
+                return;
+            }
+            (a, b) => {
+                let (ball_a, ball_b) = (ball_of(a), ball_of(b));
+                let shape_a = shape_of(a, &ball_a);
+                let shape_b = shape_of(b, &ball_b);
+                return self.manifolds.add_points((shape_a, frame_a), (shape_b, frame_b), margin, &mut self.raw);
+            }
+        };
+        if one.gap < margin {
+            self.raw.push(one);
+        }
+    }
+}
+
+fn ball_of(solid: &Solid) -> Ball {
+    Ball::new(if let Solid::Ball(radius) = solid { *radius } else { 0.0 })
+}
+
+fn shape_of<'a>(solid: &'a Solid, ball: &'a Ball) -> &'a dyn Shape {
+    match solid {
+        Solid::Ball(_) => ball,
+        Solid::Cuboid(_, shape) | Solid::HalfSpace(shape) | Solid::Other(shape) => &**shape,
+    }
+}

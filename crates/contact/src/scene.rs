@@ -1,0 +1,171 @@
+//! What may touch what: checked, immutable, shared by all threads.
+
+use crate::{Collider, ContactError, Shape};
+use parry3d_f64::math::{Pose as ParryPose, Vector};
+use parry3d_f64::shape::SharedShape;
+use spatial::{Frame, Mat3, Pose, Vec3};
+
+/// One contact point of a pair, A the pair's first collider, B its second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// Index into [`Scene::pairs`].
+    pub pair: u32,
+    /// Identity inside the pair.
+    pub feature: u64,
+    /// Witness point on A's surface, W axes, m.
+    pub point_a_w: Vec3,
+    /// Witness point on B's surface, W axes, m.
+    pub point_b_w: Vec3,
+    /// Unit normal, from A to B.
+    pub normal_w: Vec3,
+    /// Distance along the normal, m; negative: penetration.
+    pub gap: f64,
+}
+
+/// A convex piece, or a surface, as the detector asks it.
+#[derive(Clone)]
+pub(crate) enum Solid {
+    Ball(f64),
+    Cuboid(Vec3, SharedShape),
+    HalfSpace(SharedShape),
+    Other(SharedShape),
+}
+
+/// One piece of a collider.
+#[derive(Clone)]
+pub(crate) struct Part {
+    /// Piece in body.
+    pub(crate) frame_bp: Frame,
+    pub(crate) solid: Solid,
+    /// Half extents of the piece's bounding box about `centre`, piece axes; infinite for a half-space.
+    pub(crate) half: Vec3,
+    pub(crate) centre: Vec3,
+}
+
+/// Colliders and the pairs of them that are looked at.
+#[derive(Clone)]
+pub struct Scene {
+    colliders: Vec<Collider>,
+    pairs: Vec<[usize; 2]>,
+    pub(crate) parts: Vec<Vec<Part>>,
+    /// Pair of two colliders, by `low * n + high`; `NONE` where they are not looked at.
+    pub(crate) pair_of: Vec<u32>,
+}
+
+/// No pair.
+pub(crate) const NONE: u32 = u32::MAX;
+
+impl std::fmt::Debug for Scene {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Scene").field("colliders", &self.colliders.len()).field("pairs", &self.pairs.len()).finish()
+    }
+}
+
+impl Scene {
+    /// Checks and prepares colliders and pairs of their indices.
+    pub fn new(colliders: Vec<Collider>, pairs: Vec<[usize; 2]>) -> Result<Self, ContactError> {
+        let mut parts = Vec::with_capacity(colliders.len());
+        for collider in &colliders {
+            collider.check()?;
+            let mut own = Vec::new();
+            add_parts(collider, &collider.shape, &collider.pose_bs, &mut own)?;
+            parts.push(own);
+        }
+        let n = colliders.len();
+        let mut pair_of = vec![NONE; n * n];
+        for (index, &[a, b]) in pairs.iter().enumerate() {
+            if let Some(&index_out) = [a, b].iter().find(|i| **i >= n) {
+                return Err(ContactError::PairIndex { pair: index, index: index_out, colliders: n });
+            }
+            if a == b {
+                return Err(ContactError::SelfPair { pair: index, collider: colliders[a].name.clone() });
+            }
+            pair_of[a.min(b) * n + a.max(b)] = index as u32;
+        }
+        Ok(Self { colliders, pairs, parts, pair_of })
+    }
+
+    /// The pairs, as indices of colliders.
+    pub fn pairs(&self) -> &[[usize; 2]] {
+        &self.pairs
+    }
+
+    /// The colliders.
+    pub fn colliders(&self) -> &[Collider] {
+        &self.colliders
+    }
+}
+
+fn add_parts(collider: &Collider, shape: &Shape, pose: &Pose, parts: &mut Vec<Part>) -> Result<(), ContactError> {
+    if let Shape::Compound(children) = shape {
+        return children
+            .iter()
+            .try_for_each(|(child_pose, child)| add_parts(collider, child, &(pose * child_pose), parts));
+    }
+    let (solid, turn) = solid_of(collider, shape)?;
+    let mut frame_bp = Frame::from(pose);
+    frame_bp.rot *= turn;
+    let (half, centre) = bounds(&solid);
+    parts.push(Part { frame_bp, solid, half, centre });
+    Ok(())
+}
+
+/// The piece, and its turn within the shape's frame (parry's cylinder stands along y).
+fn solid_of(collider: &Collider, shape: &Shape) -> Result<(Solid, Mat3), ContactError> {
+    let upright = Mat3::identity();
+    let solid = match shape {
+        Shape::Ball { radius } => Solid::Ball(*radius),
+        Shape::Cuboid { half_extents: h } => Solid::Cuboid(*h, SharedShape::cuboid(h.x, h.y, h.z)),
+        Shape::HalfSpace => Solid::HalfSpace(SharedShape::halfspace(Vector::Z)),
+        Shape::Capsule { radius, half_length } => Solid::Other(SharedShape::capsule_z(*half_length, *radius)),
+        Shape::Cylinder { radius, half_length } => {
+            let turn = spatial::rotation_about(&Vec3::x(), std::f64::consts::FRAC_PI_2);
+            return Ok((Solid::Other(SharedShape::cylinder(*half_length, *radius)), turn));
+        }
+        Shape::ConvexHull { vertices } => {
+            let points: Vec<Vector> = vertices.iter().map(to_parry).collect();
+            let hull = SharedShape::convex_hull(&points).filter(|h| h.mass_properties(1.0).mass() > 0.0);
+            Solid::Other(hull.ok_or_else(|| ContactError::DegenerateHull {
+                collider: collider.name.clone(),
+                points: vertices.len(),
+            })?)
+        }
+        Shape::TriMesh { vertices, triangles } => {
+            let mesh = SharedShape::trimesh(vertices.iter().map(to_parry).collect(), triangles.clone());
+            Solid::Other(mesh.map_err(|_| ContactError::DegenerateMesh {
+                collider: collider.name.clone(),
+                triangles: triangles.len(),
+            })?)
+        }
+        Shape::Compound(_) => Solid::Ball(0.0),
+    };
+    Ok((solid, upright))
+}
+
+fn bounds(solid: &Solid) -> (Vec3, Vec3) {
+    match solid {
+        Solid::Ball(radius) => (Vec3::repeat(*radius), Vec3::zeros()),
+        Solid::Cuboid(half, _) => (*half, Vec3::zeros()),
+        Solid::HalfSpace(_) => (Vec3::repeat(f64::INFINITY), Vec3::zeros()),
+        Solid::Other(shape) => {
+            let aabb = shape.compute_local_aabb();
+            (from_parry(aabb.half_extents()), from_parry(aabb.center()))
+        }
+    }
+}
+
+pub(crate) fn to_parry(v: &Vec3) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
+
+pub(crate) fn from_parry(v: Vector) -> Vec3 {
+    Vec3::new(v.x, v.y, v.z)
+}
+
+/// A frame as parry takes it.
+pub(crate) fn pose_to_parry(frame: &Frame) -> ParryPose {
+    let r = &frame.rot;
+    let column = |k: usize| Vector::new(r[(0, k)], r[(1, k)], r[(2, k)]);
+    let matrix = parry3d_f64::glamx::DMat3::from_cols(column(0), column(1), column(2));
+    ParryPose::from_parts(to_parry(&frame.pos), parry3d_f64::glamx::DQuat::from_mat3(&matrix))
+}

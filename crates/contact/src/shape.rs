@@ -1,0 +1,129 @@
+//! Shapes as a file or a builder describes them, and their checks.
+
+use crate::ContactError;
+use spatial::{Pose, Vec3};
+
+/// A collision shape in its own frame S; lengths in m.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A ball about the origin.
+    Ball {
+        /// Radius, m.
+        radius: f64,
+    },
+    /// A box about the origin.
+    Cuboid {
+        /// Half the edge lengths, m.
+        half_extents: Vec3,
+    },
+    /// A cylinder about the origin, its axis along z.
+    Cylinder {
+        /// Radius, m.
+        radius: f64,
+        /// Half the length, m.
+        half_length: f64,
+    },
+    /// A cylinder along z with hemispheres on its ends.
+    Capsule {
+        /// Radius, m.
+        radius: f64,
+        /// Half the length of the cylindrical part, m.
+        half_length: f64,
+    },
+    /// Solid for z ≤ 0, outward normal +z.
+    HalfSpace,
+    /// The convex hull of points.
+    ConvexHull {
+        /// Points, m; those inside are dropped.
+        vertices: Vec<Vec3>,
+    },
+    /// A triangle mesh: solid where it is closed, thin and two-sided where it is open.
+    TriMesh {
+        /// Vertices, m.
+        vertices: Vec<Vec3>,
+        /// Corners of each triangle, counter-clockwise seen from outside (turned if a closed mesh is inside out).
+        triangles: Vec<[u32; 3]>,
+    },
+    /// Several shapes, each with its pose in S.
+    Compound(Vec<(Pose, Shape)>),
+}
+
+/// A shape that is fixed in a body.
+#[derive(Clone, Debug)]
+pub struct Collider {
+    /// Name, for errors and for choosing pairs (`servicer/finger_left`).
+    pub name: String,
+    /// Index of the moving body that carries it, as the caller counts them.
+    pub body: usize,
+    /// Pose of the shape in the body, B←S.
+    pub pose_bs: Pose,
+    /// The shape.
+    pub shape: Shape,
+}
+
+impl Collider {
+    /// Checks sizes, vertices and indices; whether points span a volume shows when the scene is built.
+    pub(crate) fn check(&self) -> Result<(), ContactError> {
+        self.check_pose(&self.pose_bs)?;
+        self.check_shape(&self.shape)
+    }
+
+    fn check_shape(&self, shape: &Shape) -> Result<(), ContactError> {
+        match shape {
+            Shape::Ball { radius } => self.check_size("radius", *radius),
+            Shape::Cuboid { half_extents: h } => {
+                [h.x, h.y, h.z].iter().try_for_each(|&x| self.check_size("half extent", x))
+            }
+            Shape::Cylinder { radius, half_length } | Shape::Capsule { radius, half_length } => {
+                self.check_size("radius", *radius)?;
+                self.check_size("half length", *half_length)
+            }
+            Shape::HalfSpace => Ok(()),
+            Shape::ConvexHull { vertices } => self.check_vertices(vertices),
+            Shape::TriMesh { vertices, triangles } => {
+                self.check_vertices(vertices)?;
+                self.check_triangles(vertices.len(), triangles)
+            }
+            Shape::Compound(parts) if parts.is_empty() => {
+                Err(ContactError::EmptyCompound { collider: self.name.clone() })
+            }
+            Shape::Compound(parts) => parts.iter().try_for_each(|(pose, part)| {
+                self.check_pose(pose)?;
+                self.check_shape(part)
+            }),
+        }
+    }
+
+    fn check_size(&self, quantity: &'static str, value: f64) -> Result<(), ContactError> {
+        if value > 0.0 && value.is_finite() {
+            return Ok(());
+        }
+        Err(ContactError::Size { collider: self.name.clone(), quantity, value })
+    }
+
+    fn check_pose(&self, pose: &Pose) -> Result<(), ContactError> {
+        let finite = pose.translation.vector.iter().chain(pose.rotation.coords.iter()).all(|x| x.is_finite());
+        if finite { Ok(()) } else { Err(self.not_finite("its pose".to_string())) }
+    }
+
+    fn check_vertices(&self, vertices: &[Vec3]) -> Result<(), ContactError> {
+        match vertices.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
+            Some(i) => Err(self.not_finite(format!("vertex {i}"))),
+            None => Ok(()),
+        }
+    }
+
+    fn check_triangles(&self, vertices: usize, triangles: &[[u32; 3]]) -> Result<(), ContactError> {
+        for (triangle, corners) in triangles.iter().enumerate() {
+            if let Some(&v) = corners.iter().find(|&&v| v as usize >= vertices) {
+                let (collider, vertex) = (self.name.clone(), v as usize);
+                return Err(ContactError::MeshIndex { collider, triangle, vertex, vertices });
+            }
+        }
+        Ok(())
+    }
+
+    fn not_finite(&self, what: String) -> ContactError {
+        ContactError::NotFinite { collider: self.name.clone(), what }
+    }
+}
