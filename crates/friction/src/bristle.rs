@@ -131,7 +131,13 @@ impl Bristle {
     #[inline]
     pub fn eval(&self, trial: &Trial) -> Brush {
         if trial.normal_force <= 0.0 {
-            return Brush { force: Vector3::zeros(), s: Vector3::zeros(), sticks: false, tangent: 0.0, direction: Vector3::zeros() };
+            return Brush {
+                force: Vector3::zeros(),
+                s: Vector3::zeros(),
+                sticks: false,
+                tangent: 0.0,
+                direction: Vector3::zeros(),
+            };
         }
         let bound = self.calc_level(trial.slip.norm()) * trial.normal_force;
         let s_max = bound / self.stiffness;

@@ -50,7 +50,13 @@ impl Dynamics {
     /// Joint accelerations into `v_dot`; returns the base's spatial acceleration about the anchor (zero if held).
     ///
     /// `None` if the tree has mimic joints, or if an articulated inertia is singular.
-    pub fn calc_forward(&mut self, tree: &Tree, kin: &Kinematics, drive: &Drive<'_>, v_dot: &mut [f64]) -> Option<Twist> {
+    pub fn calc_forward(
+        &mut self,
+        tree: &Tree,
+        kin: &Kinematics,
+        drive: &Drive<'_>,
+        v_dot: &mut [f64],
+    ) -> Option<Twist> {
         if tree.has_mimic() {
             return None;
         }
@@ -85,11 +91,7 @@ impl Dynamics {
                 d[(l, k)] = kin.screws[joint.column + l].dot(&u);
             }
         }
-        let d_inverse = if joint.width == 1 {
-            Mat6::from_diagonal_element(1.0 / d[(0, 0)])
-        } else {
-            d.try_inverse()?
-        };
+        let d_inverse = if joint.width == 1 { Mat6::from_diagonal_element(1.0 / d[(0, 0)]) } else { d.try_inverse()? };
         scratch.d_inverse[j] = d_inverse;
         scratch.coriolis[body] = kin.vel[parent].cross_motion(&rate);
         let mut reduced = self.composite[body];

@@ -18,10 +18,11 @@ mod error;
 mod folder;
 mod log;
 mod mesh;
+mod observe;
 mod parquet_file;
 pub mod plot;
 #[cfg(feature = "rerun")]
-mod rerun_sink;
+pub mod rerun_sink;
 mod scene;
 
 pub use channel::{Axes, Channel, ChannelSpec, Plot, Signals, axes_of};
@@ -30,5 +31,6 @@ pub use error::RecordError;
 pub use folder::{OutputFolder, SUMMARY_FORMAT, write_file};
 pub use log::{ContactSample, Event, EventKind, Log, Meta, Sample};
 pub use mesh::{TriangleMesh, triangulate};
+pub use observe::{Probe, Recorder, RecorderPlan, SampleSink};
 pub use parquet_file::{SIGNALS_FORMAT, encode_parquet, read_parquet, write_parquet};
 pub use scene::{Scene, SceneLink, SceneVehicle, Trail};

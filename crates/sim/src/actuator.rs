@@ -98,7 +98,8 @@ impl Coordinate {
     /// From a joint's tags.
     pub fn from_joint(joint: &Joint, q_index: usize) -> Self {
         let (overtravel, hardest) = if joint.kind == JointKind::Revolute { (1e-2, 1e5) } else { (1e-3, 1e6) };
-        let stop_stiffness = if joint.effort_limit > 0.0 { (joint.effort_limit / overtravel).min(hardest) } else { hardest };
+        let stop_stiffness =
+            if joint.effort_limit > 0.0 { (joint.effort_limit / overtravel).min(hardest) } else { hardest };
         let dry = (joint.friction > 0.0).then(|| Bristle {
             mu_static: joint.friction,
             mu_kinetic: joint.friction,
@@ -163,7 +164,8 @@ impl Coordinate {
         commands: &[Command],
     ) -> CoordinateForce {
         let (q, v) = (at.q_base + at.beta * v_new, (1.0 - at.theta) * at.v_start + at.theta * v_new);
-        let mut out = CoordinateForce { effort: -self.damping * v, slope: self.damping * at.theta, ..Default::default() };
+        let mut out =
+            CoordinateForce { effort: -self.damping * v, slope: self.damping * at.theta, ..Default::default() };
         if let Some([lower, upper]) = self.limits {
             let (below, above) = (lower - q, q - upper);
             let (depth, sign) = if below > 0.0 { (below, 1.0) } else { (above, -1.0) };

@@ -211,7 +211,11 @@ fn remember(memories: &[ContactMemory], touches: &mut [Touch], frames: &[Frame])
         if touches.iter().any(taken) {
             continue;
         }
-        let is_orphan = |t: &Touch| t.pair == memory.pair && t.s == Vec3::zeros() && !memories.iter().any(|m| (m.pair, m.feature) == (t.pair, t.feature));
+        let is_orphan = |t: &Touch| {
+            t.pair == memory.pair
+                && t.s == Vec3::zeros()
+                && !memories.iter().any(|m| (m.pair, m.feature) == (t.pair, t.feature))
+        };
         let distance = |t: &Touch| (t.local_b - memory.point_b).norm();
         let nearest = touches.iter_mut().filter(|t| is_orphan(t)).min_by(|a, b| distance(a).total_cmp(&distance(b)));
         if let Some(touch) = nearest.filter(|t| distance(t) < NEIGHBOUR) {

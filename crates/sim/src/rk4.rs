@@ -7,7 +7,7 @@
 //! theirs at its end. Sliding bristles turn at |u|/s_max, which wants h < 2 s_max/|u|.
 
 use crate::actuator::CoordinatePoint;
-use crate::contacts::{find_touches, find_memory};
+use crate::contacts::{find_memory, find_touches};
 use crate::model::Model;
 use crate::solve;
 use crate::state::{Account, ContactMemory, State};

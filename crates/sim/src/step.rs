@@ -138,8 +138,7 @@ fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) 
             Scheme::ImplicitMidpoint => (0.25 * h, 0.5, q - 0.25 * h * v, 0.25 * h * v, 0.5 * h),
             Scheme::SemiImplicitEuler => (0.0, 0.0, q, h * v, h),
         };
-        let point =
-            CoordinatePoint { q_base, moved_base, v_start: v, beta, theta, dry_start: state.dry[i], elapsed };
+        let point = CoordinatePoint { q_base, moved_base, v_start: v, beta, theta, dry_start: state.dry[i], elapsed };
         let force = coordinate.eval(&point, v, &model.actuators, &state.commands);
         ws.coordinate_points[i] = point;
         ws.coordinate_forces[i] = force;

@@ -62,8 +62,10 @@ mod slot {
     pub(super) const START: usize = 4;
     pub(super) const END: usize = 11;
     pub(super) const END_TWIST: usize = 18;
+    /// Time since which the target has been touched from both sides, s; negative: it has not.
+    pub(super) const TOUCHED: usize = 24;
     /// References of the arm's joints, then their rates at the grasp, then the comfortable pose.
-    pub(super) const JOINTS: usize = 24;
+    pub(super) const JOINTS: usize = 25;
 }
 
 /// Time between two commands, s.
@@ -74,6 +76,9 @@ const SETTLE: f64 = 0.15;
 const PATIENCE: f64 = 12.0;
 /// Share of the closing force that every finger must press with to count as closed.
 const CLOSED: f64 = 0.5;
+/// Force from both sides that counts as touch, N, and time in which the squeeze then rises, s.
+const TOUCH: f64 = 2.0;
+const RISE: f64 = 0.5;
 /// Step of the search for the moment of the grasp, s, and how far it looks ahead.
 const SEARCH: (f64, f64) = (0.5, 25.0);
 /// Largest corrections of attitude, rad, and position, m, that one command answers.
@@ -221,6 +226,7 @@ impl Grasper {
         let n = self.drives.len();
         memory.resize(slot::JOINTS + 3 * n, 0.0);
         memory[slot::STEADY] = -1.0;
+        memory[slot::TOUCHED] = -1.0;
         for (i, drive) in self.drives.iter().enumerate() {
             memory[slot::JOINTS + i] = world.state().q[drive.q_index];
             memory[slot::JOINTS + 2 * n + i] = world.state().q[drive.q_index];
@@ -389,15 +395,21 @@ impl Grasper {
         self.write_references(world, memory, commands, &rates);
     }
 
-    fn command_fingers(&self, world: &World, memory: &[f64], commands: &mut [Command]) {
+    /// Fingers close at their rate; once they touch from both sides the force rises to the squeeze.
+    fn command_fingers(&self, world: &World, memory: &mut [f64], commands: &mut [Command]) {
         let closes = matches!(PHASES[memory[slot::PHASE] as usize], Phase::Close | Phase::Damp | Phase::Hold);
+        let time = world.state().time;
+        if closes && memory[slot::TOUCHED] < 0.0 && self.calc_press(world) > TOUCH {
+            memory[slot::TOUCHED] = time;
+        }
+        let rise = if memory[slot::TOUCHED] < 0.0 { 0.0 } else { ((time - memory[slot::TOUCHED]) / RISE).min(1.0) };
         for finger in &self.fingers {
             let ActuatorKind::JointDrive { damping, .. } = world.model().actuators[finger.actuator].kind else { continue };
-            // A rate loop whose force ends at the squeeze: it closes at its speed and presses with its force.
-            let force = finger.count * self.spec.closing_force_n;
             let velocity = if closes { self.spec.closing_speed_m_per_s } else { 0.0 };
-            let effort = if closes { (force - damping * velocity).min(force) } else { 0.0 };
-            commands[finger.actuator] = Command { position: 0.0, velocity, effort: if closes { effort.max(0.0) } else { 0.0 } };
+            // At standstill the rate loop alone presses with damping × velocity.
+            let missing = finger.count * self.spec.closing_force_n - damping * velocity;
+            let effort = if closes { rise * missing } else { 0.0 };
+            commands[finger.actuator] = Command { position: 0.0, velocity, effort };
         }
     }
 
@@ -459,8 +471,12 @@ impl Grasper {
         }
     }
 
-    /// Whether the target is pressed from both sides with a good part of the closing force.
     fn fingers_press(&self, world: &World) -> bool {
+        self.calc_press(world) > CLOSED * self.spec.closing_force_n
+    }
+
+    /// The smaller of the forces that press the target from the two sides, N.
+    fn calc_press(&self, world: &World) -> f64 {
         let axis = self.tool(world).rot.column(1).into_owned();
         let (mut plus, mut minus) = (0.0, 0.0);
         for touch in world.touches() {
@@ -474,7 +490,7 @@ impl Grasper {
             let along = on_target.dot(&axis);
             if along > 0.0 { plus += along } else { minus -= along }
         }
-        plus.min(minus) > CLOSED * self.spec.closing_force_n
+        plus.min(minus)
     }
 }
 

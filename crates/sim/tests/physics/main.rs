@@ -16,4 +16,5 @@ mod orbit;
 mod restitution;
 mod stiff;
 mod support;
+mod symmetry;
 mod torque_free;

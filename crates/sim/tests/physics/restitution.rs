@@ -90,3 +90,20 @@ fn implicit_integrators_never_gain_energy_in_an_impact() {
         }
     }
 }
+
+#[test]
+fn midpoint_gains_no_energy_where_several_points_share_an_impact() {
+    // Four corners at once: each contact may be resolved by itself, (h ω)² = 0.09, and the block on all four not.
+    for h_omega in [0.15, 0.2, 0.25, 0.3] {
+        let law = sim::PairLaw { normal: spring(h_omega), friction: None };
+        let mut largest = 0.0_f64;
+        for phase in 0..8 {
+            let mut world = crate::support::scenes::block_on_slope(0.0, law, &Setup::new(Integrator::ImplicitMidpoint));
+            world.state_mut().bases[0].translation.vector.z += SPEED * STEP * (1.0 + (f64::from(phase) + 0.5) / 8.0);
+            world.set_base_twists(&[crate::support::twist([0.0; 3], [0.0, 0.0, -SPEED])]);
+            run(&mut world, 40);
+            largest = largest.max(world.kinematics(0).vel[0].lin.z / SPEED);
+        }
+        println!("h ω of one point {h_omega}: e up to {largest:.3}");
+    }
+}
