@@ -12,8 +12,8 @@
 //! grasp (inverse kinematics), the one that asks least of the joints. Rates by the generalised Jacobian
 //! ([`super::free_floating`]), references to the joint drives. No pose is scripted.
 //!
-//! Two switches show what each part is worth: without `prediction` the tool goes to where the point is now, at the
-//! planned time; without `rate_matching` it follows positions only.
+//! Two switches show what each part is worth: without `prediction` the reach ends where the point is when it is planned,
+//! and starts the approach from there; without `rate_matching` the tool follows positions only.
 
 use super::free_floating::{Arm, RateRequest, calc_bounded_error};
 use super::predict::FreeBody;
@@ -64,8 +64,10 @@ mod slot {
     pub(super) const END_TWIST: usize = 18;
     /// Time since which the target has been touched from both sides, s; negative: it has not.
     pub(super) const TOUCHED: usize = 24;
-    /// References of the arm's joints, then their rates at the grasp, then the comfortable pose.
-    pub(super) const JOINTS: usize = 25;
+    /// Time of the first touch from any side, s; negative: there was none.
+    pub(super) const FELT: usize = 25;
+    /// References of the arm's joints, then their last commanded rates, then the comfortable pose.
+    pub(super) const JOINTS: usize = 26;
 }
 
 /// Time between two commands, s.
@@ -85,6 +87,8 @@ const SEARCH: (f64, f64) = (0.5, 25.0);
 const LONGEST: [f64; 2] = [0.2, 0.1];
 /// How far a joint's reference may lead the joint, rad.
 const LEASH: f64 = 0.03;
+/// The same while the arm gives way to the closing fingers, rad.
+const YIELDING_LEASH: f64 = 5e-4;
 /// Rate of the null space's return to the comfortable pose, 1/s.
 const COMFORT: f64 = 0.05;
 
@@ -227,6 +231,7 @@ impl Grasper {
         memory.resize(slot::JOINTS + 3 * n, 0.0);
         memory[slot::STEADY] = -1.0;
         memory[slot::TOUCHED] = -1.0;
+        memory[slot::FELT] = -1.0;
         for (i, drive) in self.drives.iter().enumerate() {
             memory[slot::JOINTS + i] = world.state().q[drive.q_index];
             memory[slot::JOINTS + 2 * n + i] = world.state().q[drive.q_index];
@@ -257,7 +262,7 @@ impl Grasper {
         FreeBody::new(&pose, &kin.vel[0], &inertia_w.transformed(&back, &Vec3::zeros()))
     }
 
-    /// Pose and twist of the standoff after `ahead` seconds; of the present moment without prediction.
+    /// Pose and twist of the standoff after `ahead` seconds; without prediction the present pose, at rest.
     fn predict_standoff(&self, world: &World, ahead: f64) -> (Pose, Twist) {
         let (grapple, twist) = self.predict_grapple(world, ahead);
         let standoff = grapple * Pose::translation(0.0, 0.0, -self.spec.standoff_m);
@@ -267,13 +272,9 @@ impl Grasper {
     fn predict_grapple(&self, world: &World, ahead: f64) -> (Pose, Twist) {
         let now = self.grapple(world);
         let held = Twist::default();
-        let Some(mut body) = self.target_body(world).filter(|_| self.spec.prediction || self.spec.rate_matching) else {
-            return (now, held);
-        };
+        let Some(mut body) = self.target_body(world).filter(|_| self.spec.prediction) else { return (now, held) };
         let fixed = body.pose().inverse() * now;
-        if self.spec.prediction {
-            body.advance(ahead.max(1e-9));
-        }
+        body.advance(ahead.max(1e-9));
         let pose = body.pose() * fixed;
         let twist = if self.spec.rate_matching { body.twist_at(&pose.translation.vector) } else { held };
         (pose, twist)
@@ -325,12 +326,7 @@ impl Grasper {
                 Vec3::from_column_slice(&memory[slot::END_TWIST + 3..slot::END_TWIST + 6]),
             );
             let duration = memory[slot::ARRIVAL];
-            let (end, end_twist) = if self.spec.prediction {
-                (read_pose(&memory[slot::END..]), end_twist)
-            } else {
-                self.predict_standoff(world, 0.0)
-            };
-            let start = read_pose(&memory[slot::START..]);
+            let (start, end) = (read_pose(&memory[slot::START..]), read_pose(&memory[slot::END..]));
             return Quintic { start, end, end_twist, duration }.pose(time);
         }
         let run = time - memory[slot::ARRIVAL];
@@ -354,10 +350,14 @@ impl Grasper {
         let tool = self.tool(world);
         let goal = self.goal(world, memory, 0.0);
         let lead = calc_rate(&goal, &self.goal(world, memory, 1e-3), 1e-3);
-        let error = calc_bounded_error(&tool, &goal, LONGEST);
+        self.feel(world, memory);
+        let felt = memory[slot::FELT] >= 0.0;
+        // Two hands on one bar: what the fingers settle between them, position control may not fight.
+        let error = if felt { Twist::default() } else { calc_bounded_error(&tool, &goal, LONGEST) };
         let n = self.drives.len();
         let comfort = |(i, d): (usize, &ArmDrive)| COMFORT * (memory[slot::JOINTS + 2 * n + i] - world.state().q[d.q_index]);
-        let wish: Vec<f64> = self.drives.iter().enumerate().map(comfort).collect();
+        let wish: Vec<f64> =
+            self.drives.iter().enumerate().map(|d| if felt { 0.0 } else { comfort(d) }).collect();
         let request = RateRequest {
             twist: lead + error * self.spec.tracking_bandwidth_per_s,
             damping: self.spec.jacobian_damping,
@@ -366,16 +366,31 @@ impl Grasper {
         let mut rates = self.arm.calc_rates(world, &request);
         let overspeed = rates.iter().zip(&self.drives).map(|(r, d)| r.abs() / d.max_rate).fold(1.0, f64::max);
         rates.iter_mut().for_each(|r| *r /= overspeed);
+        memory[slot::JOINTS + n..slot::JOINTS + 2 * n].copy_from_slice(&rates);
         self.write_references(world, memory, commands, &rates);
+    }
+
+    /// Notes the first touch of the closing fingers.
+    fn feel(&self, world: &World, memory: &mut [f64]) {
+        let closing = PHASES[memory[slot::PHASE] as usize] == Phase::Close;
+        if closing && memory[slot::FELT] < 0.0 {
+            let [plus, minus] = self.calc_presses(world);
+            if plus + minus > TOUCH {
+                memory[slot::FELT] = world.state().time;
+            }
+        }
     }
 
     fn write_references(&self, world: &World, memory: &mut [f64], commands: &mut [Command], rates: &[f64]) {
         let period = self.period_steps as f64 * world.model().step;
+        // Once the fingers feel the bar and until they hold it, the arm gives way: its references go with it.
+        let yields = PHASES[memory[slot::PHASE] as usize] == Phase::Close && memory[slot::FELT] >= 0.0;
+        let leash = if yields { YIELDING_LEASH } else { LEASH };
         for (i, (drive, rate)) in self.drives.iter().zip(rates).enumerate() {
             let position = world.state().q[drive.q_index];
             let reference = &mut memory[slot::JOINTS + i];
             // The reference is that of the period's middle; it may not run away from a joint that cannot follow.
-            *reference = (*reference + rate * period).clamp(position - LEASH, position + LEASH);
+            *reference = (*reference + rate * period).clamp(position - leash, position + leash);
             if let Some([lower, upper]) = drive.limits {
                 *reference = reference.clamp(lower, upper);
             }
@@ -383,7 +398,7 @@ impl Grasper {
         }
     }
 
-    /// Joint rates of the grasp's moment, faded out by a half cosine.
+    /// The last commanded joint rates, faded out by a half cosine.
     fn damp(&self, world: &World, memory: &mut [f64], commands: &mut [Command]) {
         let (n, length) = (self.drives.len(), 3.0 * self.spec.damping_time_s);
         let s = ((world.state().time - memory[slot::SINCE]) / length).clamp(0.0, 1.0);
@@ -445,13 +460,9 @@ impl Grasper {
     }
 
     fn enter(&self, world: &World, memory: &mut [f64], phase: Phase) {
-        let n = self.drives.len();
         memory[slot::PHASE] = PHASES.iter().position(|p| *p == phase).unwrap_or(0) as f64;
         memory[slot::SINCE] = world.state().time;
         memory[slot::STEADY] = -1.0;
-        for (i, drive) in self.drives.iter().enumerate() {
-            memory[slot::JOINTS + n + i] = world.state().v[drive.v_index];
-        }
     }
 
     fn is_phase_over(&self, world: &World, memory: &[f64], phase: Phase) -> bool {
@@ -477,6 +488,12 @@ impl Grasper {
 
     /// The smaller of the forces that press the target from the two sides, N.
     fn calc_press(&self, world: &World) -> f64 {
+        let [plus, minus] = self.calc_presses(world);
+        plus.min(minus)
+    }
+
+    /// Forces on the target along the closing axis, by sign, N.
+    fn calc_presses(&self, world: &World) -> [f64; 2] {
         let axis = self.tool(world).rot.column(1).into_owned();
         let (mut plus, mut minus) = (0.0, 0.0);
         for touch in world.touches() {
@@ -490,7 +507,7 @@ impl Grasper {
             let along = on_target.dot(&axis);
             if along > 0.0 { plus += along } else { minus -= along }
         }
-        plus.min(minus)
+        [plus, minus]
     }
 }
 
