@@ -40,6 +40,9 @@ pub(crate) struct Touch {
     pub s: Vec3,
     /// Velocity of B's point relative to A's at the start.
     pub u: Vec3,
+    /// What the bodies' turning adds to it over the step, without any gain: h (ω_B − ω_A) × ẋ_C. Gains are spatial, those
+    /// of the velocity field at a place fixed in W, but the contact moves on with ẋ_C, taken as the mean of both points'.
+    pub carried: Vec3,
     pub place: Place,
     pub out: Outcome,
 }
@@ -119,7 +122,7 @@ impl Touch {
                 out.g += h * at.beta * brush.tangent * plane_of(&n);
             }
         }
-        out.line = out.law + excess + out.g * (u_new - self.u) / h;
+        out.line = out.law + excess + out.g * (u_new - self.u - self.carried) / h;
         out.force = out.law;
         out
     }
@@ -134,6 +137,13 @@ impl Touch {
     fn relative_velocity(ws: &Workspace, model: &Model, body_a: usize, body_b: usize, point: &Vec3) -> Vec3 {
         ws.vel_at(model, body_b, point) - ws.vel_at(model, body_a, point)
     }
+}
+
+/// (ω_B − ω_A) × ½ (v_A + v_B) at the contact point, m/s².
+pub(crate) fn calc_carried(model: &Model, ws: &Workspace, touch: &Touch) -> Vec3 {
+    let spin = |body: usize| model.owners.get(body).map_or(Vec3::zeros(), |&(v, b)| ws.kin[v].vel[b].ang);
+    let at = |body: usize| ws.vel_at(model, body, &touch.point);
+    (spin(touch.body_b) - spin(touch.body_a)).cross(&(0.5 * (at(touch.body_a) + at(touch.body_b))))
 }
 
 /// The projector on the plane normal to `n`.
@@ -184,9 +194,13 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
             gap: contact.gap,
             s: Vec3::zeros(),
             u,
+            carried: Vec3::zeros(),
             place: Place::default(),
             out: Outcome::default(),
         });
+    }
+    for i in 0..ws.touches.len() {
+        ws.touches[i].carried = calc_carried(model, ws, &ws.touches[i]) * h;
     }
     remember(&state.bristles, &mut ws.touches, &ws.frames);
 }

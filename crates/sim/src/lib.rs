@@ -11,11 +11,15 @@
 //!   A dv = h (τ − c + Jᵀ f),   A = M + Jᵀ G J + diag(h k_d + h² k_p)
 //!   f_lin = f − G J dv / h, checked against the law at u + J dv; a new line where it missed
 //!   p_a −= h f_lin,  p_b += h f_lin,  L likewise with x × h f_lin: the same numbers on both sides
-//!   poses with the solved velocities; bristles from the displacement of the material points
+//!   poses with the solved velocities, centres of mass with p/m; bristles from the displacement of the material points
 //!
 //! Momentum is conserved to rounding because only equal and opposite impulses enter it; stiffness is harmless because
 //! the poses move with the *solved* velocities (backward Euler map of the linear test equation). The base twist taken
 //! from the momentum differs from the solved one by O(h²), and that difference meets no stiffness.
+//!
+//! Where u' is meant at the end of the step, u' = u + J dv + h (ω_b − ω_a) × ẋ_c: dv is spatial, the gain of the velocity
+//! field at a place fixed in W, and the contact moves on. With it, and with centres of mass that move by h p/m exactly, a
+//! scene seen from a drifting frame is the same to rounding.
 //!
 //! Integrators: [`Integrator`]. Sources: Anitescu and Potra 1997 for the linearly implicit contact step; Featherstone
 //! 2008 for the tree algorithms; Liang, Fillmore and Ma 2012 for the bristle.

@@ -101,6 +101,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     place(model, state, &mut ws.displacement, &from, h);
     state.account.add_scaled(&rk.sum.account, h);
     ws.rk = rk;
+    ws.update_positions(model, state);
     finish(model, state, ws);
 }
 

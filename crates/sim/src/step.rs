@@ -5,7 +5,7 @@
 //! 1. external wrenches, bias by inverse dynamics at zero acceleration, touching points;
 //! 2. laws at the predicted end, A dv = h (τ − c + Jᵀf), and a check of the laws at the solution: where the line
 //!    missed the law, a new line and a new solve (at most eight);
-//! 3. momentum takes the forces that both bodies felt; poses move with the solved velocities;
+//! 3. momentum takes the forces that both bodies felt; poses move with the solved velocities, centres of mass with p/m;
 //! 4. kinematics at the new pose, base twist from momentum, bristles from the displacement of material points.
 //!
 //! Derivation, costs and the traps: crate documentation.
@@ -16,7 +16,7 @@ use crate::model::{Base, Model};
 use crate::solve;
 use crate::state::State;
 use crate::workspace::{Workspace, world_wrench};
-use multibody::Accelerations;
+use multibody::{Accelerations, Kinematics};
 use spatial::{Pose, Rot, Twist, Vec3, Wrench, exp_rotation};
 
 /// Where the laws of a step are evaluated.
@@ -54,8 +54,39 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
         Scheme::ImplicitMidpoint => drift_from_midpoint(model, state, ws, 0.5 * h),
         _ => drift(model, state, ws, h),
     }
+    ws.update_positions(model, state);
+    place_centres(model, state, ws, scheme);
     finish(model, state, ws);
     commit_bristles(model, state, ws);
+}
+
+/// Shifts every base so that its vehicle's centre of mass moves by h p/m exactly, with the momentum that moves it.
+///
+/// The drift of the base origin is off by O(h²), and L − x × p turns that into spin: a body flying at 1 m/s and turning at
+/// 1 rad/s would be pushed aside by ½ mm/s, and its rotation would depend on the frame that one looks from.
+fn place_centres(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
+    for (i, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| v.base != Base::Fixed) {
+        let start = &ws.momentum_start[i];
+        let mean = match scheme {
+            Scheme::ImplicitMidpoint => 0.5 * (start + state.momentum[i].force),
+            _ => state.momentum[i].force,
+        };
+        let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
+        let kin = &mut ws.kin[i];
+        let off = ws.centre_start[i] + mean * (model.step / mass) - (kin.anchor + first_moment / mass);
+        let mask = vehicle.base.mask();
+        let shift = Vec3::from_fn(|k, _| if mask[3 + k] { off[k] } else { 0.0 });
+        state.bases[i].translation.vector += shift;
+        kin.anchor = state.bases[i].translation.vector;
+        for body in 0..vehicle.tree.bodies.len() {
+            ws.frames[vehicle.body0 + body] = kin.frame(body);
+        }
+    }
+}
+
+/// Mass of a vehicle and its first moment about the anchor.
+fn calc_first_moment(kin: &Kinematics) -> (f64, Vec3) {
+    kin.inertia.iter().fold((0.0, Vec3::zeros()), |(mass, moment), i| (mass + i.mass, moment + i.mc))
 }
 
 /// Keeps what the end of the step needs of its start.
@@ -65,12 +96,14 @@ pub(crate) fn begin(model: &Model, state: &State, ws: &mut Workspace) {
     ws.queries_start = ws.detector.narrow_count();
     for i in 0..model.vehicles.len() {
         ws.base_start[i] = ws.kin[i].vel[0];
+        ws.momentum_start[i] = state.momentum[i].force;
+        let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
+        ws.centre_start[i] = ws.kin[i].anchor + first_moment / mass;
     }
 }
 
-/// Kinematics at the new state, and what is remembered of it.
+/// Velocities at the new state, whose positions `ws` holds, and what is remembered of it.
 pub(crate) fn finish(model: &Model, state: &mut State, ws: &mut Workspace) {
-    ws.update_positions(model, state);
     ws.update_velocities(model, state);
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| c.dry.is_some()) {
         let moved = state.q[coordinate.q_index] - ws.q_start[coordinate.q_index];
@@ -117,10 +150,12 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
 /// Decides for every touch and coordinate where its law is evaluated, and draws the first lines at zero gain.
 fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) {
     let h = model.step;
-    for touch in &mut ws.touches {
+    for i in 0..ws.touches.len() {
+        let is_stiff = scheme == Scheme::ImplicitMidpoint && is_stiff(model, &ws.touches, i);
+        let touch = &mut ws.touches[i];
         touch.place = place_of(scheme, touch, h);
         let law = &model.laws[touch.pair as usize];
-        if scheme == Scheme::ImplicitMidpoint && is_stiff(model, touch, law, h) {
+        if is_stiff {
             touch.place = Place { gap_base: touch.gap, s_base: touch.s, beta: h, theta: 1.0, elapsed: h };
         }
         let u = touch.u;
@@ -164,17 +199,20 @@ fn place_of(scheme: Scheme, touch: &Touch, h: f64) -> Place {
     }
 }
 
-/// Whether a contact oscillates too fast for the midpoint rule to resolve it: (h ω)² > 0.1 with ω² = k/m, m the lighter
-/// body's mass (a lower bound of the effective mass would call more contacts stiff; this one is cheap and safe enough,
-/// since both forms converge).
-fn is_stiff(model: &Model, touch: &Touch, law: &crate::model::PairLaw, h: f64) -> bool {
+/// Whether a contact oscillates too fast for the midpoint rule to resolve it: (h ω)² > 0.1 with ω² = n k/m, n the points
+/// of its pair, m the lighter body's mass (the effective mass is smaller off the centre of mass; this one is cheap and
+/// safe enough, since both forms converge).
+fn is_stiff(model: &Model, touches: &[Touch], index: usize) -> bool {
     let mass = |body: usize| {
         model.owners.get(body).map_or(f64::INFINITY, |&(v, b)| model.vehicles[v].tree.bodies[b].inertia.mass)
     };
+    let touch = &touches[index];
+    let law = &model.laws[touch.pair as usize];
     let lighter = mass(touch.body_a).min(mass(touch.body_b));
     let normal = law.normal.eval(touch.gap.min(-1e-5), 0.0);
     let stiffness = (-normal.d_gap).max(law.friction.map_or(0.0, |f| f.stiffness));
-    h * h * stiffness > RESOLVED * lighter
+    let sharing = touches.iter().filter(|t| t.pair == touch.pair).count() as f64;
+    model.step * model.step * sharing * stiffness > RESOLVED * lighter
 }
 
 /// Solves, checks the laws at the solution, and draws new lines where they missed.
@@ -191,11 +229,12 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
         state.work.solves += 1;
         state.work.rate_evaluations += 1;
         let first_midpoint_pass = scheme == Scheme::ImplicitMidpoint && pass == 0;
-        if first_midpoint_pass {
-            recalc_bias_at_midpoint(model, state, ws);
-        }
         converged = scheme == Scheme::SemiImplicitEuler || laws_hold(model, state, ws, h);
         must_factor = !converged;
+        if first_midpoint_pass {
+            recalc_bias_at_midpoint(model, state, ws);
+            must_factor |= !ws.touches.is_empty();
+        }
         if converged && !first_midpoint_pass {
             break;
         }
@@ -215,6 +254,12 @@ fn recalc_bias_at_midpoint(model: &Model, state: &State, ws: &mut Workspace) {
         kin.update_velocities(&vehicle.tree, &(base + gain * 0.5), &ws.v_mid[range]);
     }
     calc_bias(model, state, ws, true);
+    for i in 0..ws.touches.len() {
+        let carried = crate::contacts::calc_carried(model, ws, &ws.touches[i]) * model.step;
+        let touch = &mut ws.touches[i];
+        touch.out.line -= touch.out.g * (carried - touch.carried) / model.step;
+        touch.carried = carried;
+    }
     // The start's twists come back: gains are counted from them.
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let (start, range) = (ws.base_start[i], vehicle.v_range());
@@ -234,7 +279,7 @@ fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
         let mut touch = ws.touches[i];
         let gain = relative_gain(model, ws, &touch);
         let force = touch.out.line - touch.out.g * gain / h;
-        let next = touch.eval(&model.laws[touch.pair as usize], &(touch.u + gain), h);
+        let next = touch.eval(&model.laws[touch.pair as usize], &(touch.u + touch.carried + gain), h);
         check.add(touch.pair, (next.law - force).norm(), next.law.norm());
         touch.out = next;
         touch.out.force = force;

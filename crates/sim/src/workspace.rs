@@ -28,6 +28,9 @@ pub(crate) struct Workspace {
     /// Change of the bodies' twists in the step; the world's is the last and zero.
     pub dvel: Vec<Twist>,
     pub base_start: Vec<Twist>,
+    /// Linear momentum and centre of mass of the vehicles at the step's start.
+    pub momentum_start: Vec<Vec3>,
+    pub centre_start: Vec<Vec3>,
     pub base_gain: Vec<Twist>,
     pub q_start: Vec<f64>,
     pub queries_start: u64,
@@ -73,6 +76,8 @@ impl Workspace {
             extra: vec![SpatialMatrix::default(); bodies],
             dvel: vec![Twist::default(); bodies],
             base_start: vec![Twist::default(); model.vehicles.len()],
+            momentum_start: vec![Vec3::zeros(); model.vehicles.len()],
+            centre_start: vec![Vec3::zeros(); model.vehicles.len()],
             q_start: vec![0.0; model.nq()],
             queries_start: 0,
             base_gain: vec![Twist::default(); model.vehicles.len()],

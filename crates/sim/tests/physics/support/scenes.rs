@@ -135,6 +135,19 @@ pub(crate) fn flying_ball(normal: Normal, gap: f64, speed: f64, setup: &Setup) -
     world
 }
 
+/// The usual block without gravity, flat, its lower face `gap` above the half-space, moving at `speed` along z.
+pub(crate) fn flying_block(normal: Normal, gap: f64, speed: f64, setup: &Setup) -> World {
+    let half = Vec3::from(BLOCK);
+    let mut spec = spec(vec![(block(1.0, half), Base::Free)], setup);
+    let cuboid = Shape::Cuboid { half_extents: half };
+    spec.shapes = vec![shape("floor", None, Shape::HalfSpace), shape("block", Some(0), cuboid)];
+    spec.pairs = vec![([0, 1], PairLaw { normal, friction: None })];
+    let mut world = world(spec);
+    world.state_mut().bases[0] = Pose::translation(0.0, 0.0, half.z + gap);
+    world.set_base_twists(&[twist([0.0; 3], [0.0, 0.0, speed])]);
+    world
+}
+
 const DOWN: [f64; 3] = [0.0, 0.0, -9.81];
 
 /// The ball in gravity, `depth` deep, at rest: it swings about its equilibrium.
