@@ -1,0 +1,170 @@
+//! The command as a user meets it: exit status, files, messages.
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn softdock(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_softdock")).args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap()
+}
+
+fn error_of(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn place(dir: &tempfile::TempDir, name: &str) -> PathBuf {
+    dir.path().join(name)
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+#[test]
+fn a_run_writes_a_whole_folder_and_says_so() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = place(&dir, "run");
+    let output = softdock(&["run", "scenarios/peer-grasp.toml", "--out", text(&out), "--set", "duration_s=10.0"]);
+    assert_eq!(output.status.code(), Some(0), "{}", error_of(&output));
+    for file in ["signals.parquet", "signals.svg", "summary.json"] {
+        assert!(fs::metadata(out.join(file)).unwrap().len() > 100, "{file} is empty");
+    }
+    #[cfg(feature = "rerun")]
+    assert!(fs::metadata(out.join("run.rrd")).unwrap().len() > 10_000);
+    let summary: serde_json::Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(summary["outcome"], "completed");
+    assert!(summary["work"]["steps"] == 10_000 && summary["metrics"]["momentum_drift_linear"].as_f64().unwrap() < 1e-9);
+    assert!(summary["inputs"].as_str().unwrap().contains("peer-servicer.urdf"));
+    let (_, signals) = softdock::record::read_parquet(&out.join("signals.parquet")).unwrap();
+    assert_eq!(signals.times.len(), 1001);
+    let left: Vec<_> = fs::read_dir(dir.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+    assert_eq!(left, ["run"], "something half-written stays behind");
+}
+
+#[test]
+fn no_rrd_writes_none() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = place(&dir, "run");
+    let output = softdock(&["run", "scenarios/peer-free-arm.toml", "--no-rrd", "-q", "--out", text(&out)]);
+    assert_eq!(output.status.code(), Some(0), "{}", error_of(&output));
+    assert!(!out.join("run.rrd").exists() && out.join("signals.parquet").exists());
+}
+
+#[test]
+fn an_expectation_that_fails_is_status_1() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = place(&dir, "run");
+    let slippery = ["run", "scenarios/tumbling-capture.toml", "--no-rrd", "--set", "contact[0].friction.mu=0.02", "--out", text(&out)];
+    let output = softdock(&slippery);
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(said.contains("LOST") && said.contains("NOT AS EXPECTED: captured should be true"), "{said}");
+}
+
+#[test]
+fn usage_is_status_2_and_bad_input_3() {
+    assert_eq!(softdock(&["run"]).status.code(), Some(2));
+    assert_eq!(softdock(&["run", "scenarios/nothing.toml"]).status.code(), Some(3));
+    let output = softdock(&["run", "scenarios/peer-grasp.toml", "--set", "integrator.stepp_s=1e-3"]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(error_of(&output).contains("step_s"), "{}", error_of(&output));
+}
+
+#[test]
+fn divergence_is_status_4_with_time_and_body() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = place(&dir, "run");
+    // Explicit forces at a step far beyond the stability limit of the pads.
+    let wild = [
+        "run", "scenarios/peer-grasp.toml", "--no-rrd", "--out", text(&out), "--set", "integrator.kind=rk4", "--set",
+        "integrator.step_s=0.01",
+    ];
+    let output = softdock(&wild);
+    assert_eq!(output.status.code(), Some(4), "{}", error_of(&output));
+    let summary = fs::read_to_string(out.join("summary.json")).unwrap();
+    assert!(summary.contains("diverged at t =") && summary.contains("last good state"), "{summary}");
+}
+
+#[test]
+fn names_that_do_not_exist_are_told_with_line_and_nearest_spelling() {
+    let dir = tempfile::tempdir().unwrap();
+    let servicer = format!("{}/robots/servicer/servicer.urdf", env!("CARGO_MANIFEST_DIR"));
+    let head = format!(
+        "name = \"bad\"\nseed = 1\nduration_s = 1.0\n[[vehicle]]\nname = \"servicer\"\nurdf = \"{servicer}\"\n"
+    );
+    let cases = [
+        ("[vehicle.joints]\nelbow_pich = { position_deg = 3.0 }\n", "elbow_pitch"),
+        ("[vehicle.joints]\nelbow_pitch = { position_deg = 300.0 }\n", "range"),
+        ("[vehicle.joints]\nelbow_pitch = { position_m = 0.1 }\n", "position_deg"),
+        ("[[actuator]]\nname = \"a\"\nkind = \"joint-torque\"\njoint = \"servicer/wrist_rol\"\n", "wrist_roll"),
+        ("[[contact]]\nbetween = [\"servicer/pad_lft\", \"servicer/palm\"]\n", "pad_left"),
+        ("[[shape]]\nname = \"s\"\non = \"servicer/buss\"\nkind = \"sphere\"\nradius_m = 0.1\n", "bus"),
+        ("[[effect]]\nname = \"payload\"\nplace = \"link:servicer/palm\"\nmass = 1.0\n", "not simulated"),
+        ("[vehicle.end_effector_pose]\nframe = \"grasp_frame\"\nposition_m = [9.0, 0.0, 0.0]\n", "cannot reach"),
+    ];
+    for (tail, expected) in cases {
+        let file = place(&dir, "bad.toml");
+        fs::write(&file, format!("{head}{tail}")).unwrap();
+        let output = softdock(&["check", text(&file)]);
+        let said = error_of(&output);
+        assert_eq!(output.status.code(), Some(3), "{tail}: {said}");
+        assert!(said.contains(expected) && said.contains("bad.toml:"), "{tail}: {said}");
+    }
+}
+
+#[test]
+fn check_tells_every_fault_of_a_robot() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = place(&dir, "bad.urdf");
+    let robot = "<robot name='r'><link name='a'><inertial><mass value='nan'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' \
+                 iyz='0' izz='9'/></inertial></link><link name='a'/></robot>";
+    fs::write(&file, robot).unwrap();
+    let output = softdock(&["check", text(&file)]);
+    let said = error_of(&output);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(said.contains("nan") && said.contains("bad.urdf") && said.matches("bad.urdf:").count() >= 2, "{said}");
+}
+
+#[test]
+fn new_writes_a_scenario_that_checks_and_never_overwrites() {
+    let output = softdock(&["new", "a/b"]);
+    assert_eq!(output.status.code(), Some(3));
+    let dir = tempfile::tempdir().unwrap();
+    fs::create_dir(place(&dir, "scenarios")).unwrap();
+    std::os::unix::fs::symlink(Path::new(env!("CARGO_MANIFEST_DIR")).join("robots"), place(&dir, "robots")).unwrap();
+    let folder = place(&dir, "scenarios");
+    let output = softdock(&["new", "mine", "--dir", text(&folder)]);
+    assert_eq!(output.status.code(), Some(0), "{}", error_of(&output));
+    let output = softdock(&["check", text(&folder.join("mine.toml"))]);
+    assert_eq!(output.status.code(), Some(0), "{}", error_of(&output));
+    assert_eq!(softdock(&["new", "mine", "--dir", text(&folder)]).status.code(), Some(3));
+}
+
+#[test]
+fn a_folder_that_softdock_did_not_write_is_left_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(place(&dir, "thesis.txt"), "years of work").unwrap();
+    let output = softdock(&["run", "scenarios/peer-free-arm.toml", "--no-rrd", "--out", text(dir.path())]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(place(&dir, "thesis.txt").exists());
+}
+
+#[test]
+fn schema_is_json() {
+    let output = softdock(&["schema"]);
+    let schema: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(schema["properties"]["vehicle"].is_object());
+}
+
+#[test]
+#[cfg(feature = "rerun")]
+fn view_shows_a_robot_and_a_scenario() {
+    let dir = tempfile::tempdir().unwrap();
+    for (file, name) in [("robots/servicer/servicer.urdf", "robot"), ("scenarios/tumbling-capture.toml", "scenario")] {
+        let out = place(&dir, name);
+        let output = softdock(&["view", file, "--out", text(&out)]);
+        assert_eq!(output.status.code(), Some(0), "{}", error_of(&output));
+        assert!(fs::metadata(out.join("view.rrd")).unwrap().len() > 10_000);
+    }
+}
