@@ -1,6 +1,8 @@
 //! Determinism, bit for bit: the same run again, any thread, snapshot and resume; and no allocation in a step.
 
-use crate::support::scenes::{box_hits_plate, gripper, gripper_spec, gripper_twists, place_gripper, start_gripper};
+use crate::support::scenes::{
+    box_hits_plate, gripper, gripper_spec, gripper_twists, pad_gripper, place_gripper, shower, start_gripper,
+};
 use crate::support::{ALL, Setup, arm7, run, spec, twist, world};
 use sim::{Actuator, ActuatorKind, Base, Integrator, Model, State, World};
 use spatial::Pose;
@@ -12,8 +14,8 @@ fn bits(state: &State) -> String {
 }
 
 /// The worlds that have memory of every kind: bristles that stick and slide, drives, tumbling bases.
-fn worlds(setup: &Setup) -> [World; 2] {
-    [gripper(setup), box_hits_plate(setup)]
+fn worlds(setup: &Setup) -> [World; 4] {
+    [gripper(setup), box_hits_plate(setup), pad_gripper(setup), shower(setup)]
 }
 
 #[test]
@@ -135,8 +137,8 @@ fn step_allocates_nothing() {
         let mut spec_arm = spec(vec![(arm7(), Base::Free)], &Setup::new(integrator));
         let kind = ActuatorKind::JointDrive { coordinate: 3, stiffness: 40.0, damping: 8.0, limit: 30.0 };
         spec_arm.actuators = vec![Actuator { name: "drive".to_owned(), kind }];
-        let [grip, hit] = worlds(&Setup::new(integrator));
-        for (scene, mut world) in [grip, hit, world(spec_arm)].into_iter().enumerate() {
+        let arm = world(spec_arm);
+        for (scene, mut world) in worlds(&Setup::new(integrator)).into_iter().chain([arm]).enumerate() {
             // Warm-up: lists of contact points grow to their size.
             run(&mut world, 500);
             let counted = allocation_counter::measure(|| run(&mut world, 500));

@@ -2,7 +2,7 @@
 //!
 //! The account is the sum over links ([`sim::MomentumAudit`]), never a conserved state.
 
-use crate::support::scenes::{box_hits_plate, driven_arm, gripper, gripper_spec, start_gripper};
+use crate::support::scenes::{box_hits_plate, driven_arm, gripper, gripper_spec, pad_gripper, shower, start_gripper};
 use crate::support::{ALL, Setup, arm7, block, free_world, run, spec, twist, world};
 use sim::{Actuator, ActuatorKind, Base, Command, Energy, Environment, MomentumAudit, World};
 use spatial::Vec3;
@@ -71,16 +71,34 @@ fn box_that_strikes_a_plate_keeps_momentum() {
 #[test]
 fn gripper_holding_a_box_keeps_momentum() {
     for integrator in ALL {
-        let mut world = gripper(&Setup::new(integrator));
-        let audit = audit(&mut world, 10_000, 10, idle);
-        report(&format!("{integrator:?}, grasp"), &audit);
-        let work = world.state().work;
-        println!(
-            "    {:.3} solves per step, {} steps unconverged",
-            work.solves as f64 / work.steps as f64,
-            work.unconverged_steps
-        );
-        assert_eq!(world.touches().filter(|t| t.sticks).count(), 8, "eight points hold the box by friction");
+        for build in [gripper, pad_gripper] {
+            let mut world = build(&Setup::new(integrator));
+            let audit = audit(&mut world, 10_000, 10, idle);
+            report(&format!("{integrator:?}, grasp"), &audit);
+            let work = world.state().work;
+            println!(
+                "    {:.3} solves per step, {} steps unconverged",
+                work.solves as f64 / work.steps as f64,
+                work.unconverged_steps
+            );
+            assert_eq!(world.touches().filter(|t| t.sticks).count(), 8, "eight points hold the box by friction");
+        }
+    }
+}
+
+#[test]
+fn bodies_of_every_shape_keep_momentum_in_their_impacts() {
+    for integrator in ALL {
+        let mut world = shower(&Setup::new(integrator));
+        let mut audit = MomentumAudit::new(&world);
+        let mut touched = [false; 6];
+        for _ in 0..1_500 {
+            run(&mut world, 1);
+            world.touches().filter(|t| t.normal_force > 0.0).for_each(|t| touched[t.pair] = true);
+            audit.update(&world);
+        }
+        report(&format!("{integrator:?}, shower"), &audit);
+        assert_eq!(touched, [true; 6], "{integrator:?}: every shape has touched");
     }
 }
 

@@ -1,6 +1,8 @@
 //! The laws of motion do not care where, how fast, which way up or in which order a world is described.
 
-use crate::support::scenes::{box_hits_plate_spec, gripper_spec, start_box_hits_plate, start_gripper};
+use crate::support::scenes::{
+    box_hits_plate_spec, gripper_spec, pad_gripper_spec, start_box_hits_plate, start_gripper,
+};
 use crate::support::{ALL, Setup, arm7, free_world, run, twist, world};
 use sim::{Integrator, ModelSpec, World};
 use spatial::{Pose, Rot, Twist, Vec3};
@@ -8,9 +10,10 @@ use spatial::{Pose, Rot, Twist, Vec3};
 /// Round-off of some hundred steps, grown by impacts.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Two scenes by their spec and start.
+/// A scene by their spec and start.
 type Scene = (fn(&Setup) -> ModelSpec, fn(&mut World));
-const SCENES: [Scene; 2] = [(gripper_spec, start_gripper), (box_hits_plate_spec, start_box_hits_plate)];
+const SCENES: [Scene; 3] =
+    [(gripper_spec, start_gripper), (box_hits_plate_spec, start_box_hits_plate), (pad_gripper_spec, start_gripper)];
 
 fn twists(world: &World) -> [Twist; 2] {
     [0, 1].map(|i| world.kinematics(i).vel[0])

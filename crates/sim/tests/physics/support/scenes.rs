@@ -1,6 +1,6 @@
 //! Scenes with contact that several topics look at.
 
-use super::{Setup, arm7, block, bristle, joint, linear, link, robot, shape, spec, twist, world};
+use super::{Setup, arm7, block, bristle, hunt_crossley, joint, linear, link, robot, shape, spec, twist, world};
 use contact::{Normal, NormalLaw, Shape};
 use multibody::{JointKind, Tree};
 use sim::{Actuator, ActuatorKind, Base, Command, ModelSpec, PairLaw, ShapeSpec, World};
@@ -51,6 +51,59 @@ pub(crate) fn gripper_spec(setup: &Setup) -> ModelSpec {
     spec.pairs = vec![([0, 2], law), ([1, 2], law)];
     spec.actuators = (0..2).map(finger_drive).collect();
     spec
+}
+
+/// The same gripper with pads of finite size in place of half-spaces.
+pub(crate) fn pad_gripper_spec(setup: &Setup) -> ModelSpec {
+    let mut spec = gripper_spec(setup);
+    for (shape, side) in spec.shapes.iter_mut().zip([-1.0, 1.0]).take(2) {
+        shape.pose_ls = Pose::translation(0.01 * side, 0.005, 0.0);
+        shape.shape = Shape::Cuboid { half_extents: Vec3::new(0.01, 0.03, 0.025) };
+    }
+    spec
+}
+
+/// The pad gripper's world at its start.
+pub(crate) fn pad_gripper(setup: &Setup) -> World {
+    let mut world = world(pad_gripper_spec(setup));
+    start_gripper(&mut world);
+    world
+}
+
+/// Bodies of every shape that fly into a big free box, each tilted and turning.
+pub(crate) fn shower(setup: &Setup) -> World {
+    let corner =
+        |k: u32| Vec3::new(f64::from(k & 1) - 0.5, f64::from(k >> 1 & 1) - 0.5, f64::from(k >> 2) - 0.5) * 0.12;
+    let hull: Vec<Vec3> = (0..7).map(corner).collect();
+    let faces = vec![[0, 2, 1], [0, 1, 4], [0, 4, 2], [1, 2, 4]];
+    let shapes = [
+        Shape::Ball { radius: 0.06 },
+        Shape::Cuboid { half_extents: Vec3::new(0.06, 0.05, 0.04) },
+        Shape::Cylinder { radius: 0.05, half_length: 0.06 },
+        Shape::Capsule { radius: 0.04, half_length: 0.05 },
+        Shape::ConvexHull { vertices: hull.clone() },
+        Shape::TriMesh { vertices: hull[..5].to_vec(), triangles: faces },
+    ];
+    let half = Vec3::new(0.6, 0.4, 0.1);
+    let mut vehicles = vec![(block(30.0, half), Base::Free)];
+    vehicles.extend(shapes.iter().map(|_| (block(0.8, Vec3::repeat(0.05)), Base::Free)));
+    let mut spec = spec(vehicles, setup);
+    spec.shapes = vec![shape("box", Some(0), Shape::Cuboid { half_extents: half })];
+    let law = PairLaw { normal: hunt_crossley(4e4, 1.5, 0.4), friction: Some(bristle(0.4, 5e3, 8.0)) };
+    for (i, geometry) in shapes.into_iter().enumerate() {
+        spec.shapes.push(shape(&format!("shape{i}"), Some(i + 1), geometry));
+        spec.pairs.push(([0, i + 1], law));
+    }
+    let mut world = world(spec);
+    let mut twists = vec![twist([0.02, -0.01, 0.03], [0.0; 3])];
+    for i in 1..7 {
+        let place = Vec3::new(0.3 * f64::from((i - 1) % 3) - 0.3, 0.3 * f64::from((i - 1) / 3) - 0.15, 0.2);
+        let turned = Rot::from_scaled_axis(Vec3::new(0.2 * f64::from(i), 0.3, -0.1));
+        world.state_mut().bases[i as usize] = Pose::from_parts(place.into(), turned);
+        twists.push(twist([0.5, -0.4, 0.3 * f64::from(i)], [0.05, 0.02 * f64::from(i), -0.3]));
+    }
+    world.set_base_twists(&twists);
+    world
 }
 
 fn gripper_tree() -> Tree {
