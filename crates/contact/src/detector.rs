@@ -4,11 +4,13 @@
 //! stateless, so the points do not depend on what was asked before.
 
 use crate::analytic::{Raw, ball_ball, plane_ball, plane_cuboid, swapped};
+use crate::convex::{Convex, Core};
 use crate::manifold::{ManifoldBuffer, mix};
+use crate::primitive::{PrimitiveBuffer, convex_ball};
 use crate::reduce::reduce;
 use crate::scene::{ContactPoint, NONE, Part, Scene, Solid};
 use parry3d_f64::shape::{Ball, Shape};
-use spatial::{Frame, Vec3};
+use spatial::{Frame, Mat3, Vec3};
 
 /// Distance, m, at which points are reported although nothing moves.
 const SKIN: f64 = 1e-4;
@@ -19,9 +21,13 @@ pub struct Detector {
     order: Vec<u32>,
     candidates: Vec<u32>,
     raw: Vec<Raw>,
+    primitives: PrimitiveBuffer,
     manifolds: ManifoldBuffer,
     narrow: u64,
 }
+
+/// What parry is asked for: all points, or the nearest.
+type Question = fn(&mut ManifoldBuffer, (&dyn Shape, &Frame), (&dyn Shape, &Frame), f64, &mut Vec<Raw>);
 
 /// A box in W axes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -45,6 +51,7 @@ impl Detector {
             order: (0..n as u32).collect(),
             candidates: Vec::with_capacity(scene.pairs().len()),
             raw: Vec::with_capacity(64),
+            primitives: PrimitiveBuffer::default(),
             manifolds: ManifoldBuffer::default(),
             narrow: 0,
         }
@@ -142,25 +149,49 @@ impl Detector {
             (Solid::Ball(ra), Solid::Ball(rb)) => ball_ball(&frame_a.pos, *ra, &frame_b.pos, *rb),
             (Solid::HalfSpace(_), Solid::Ball(r)) => plane_ball(frame_a, &frame_b.pos, *r),
             (Solid::Ball(r), Solid::HalfSpace(_)) => swapped(&plane_ball(frame_b, &frame_a.pos, *r)),
-            (Solid::HalfSpace(_), Solid::Cuboid(half, _)) => {
-                return plane_cuboid(frame_a, frame_b, half, margin, &mut self.raw);
+            (Solid::Primitive(a, _), Solid::Ball(r)) => convex_ball(a, frame_a, &frame_b.pos, *r),
+            (Solid::Ball(r), Solid::Primitive(b, _)) => swapped(&convex_ball(b, frame_b, &frame_a.pos, *r)),
+            (Solid::HalfSpace(_), Solid::Primitive(b, _)) => {
+                return self.find_on_plane(frame_a, (b, frame_b), margin);
             }
-            (Solid::Cuboid(half, _), Solid::HalfSpace(_)) => {
+            (Solid::Primitive(a, _), Solid::HalfSpace(_)) => {
                 let start = self.raw.len();
-                plane_cuboid(frame_b, frame_a, half, margin, &mut self.raw);
-                self.raw[start..].iter_mut().for_each(|p| *p = swapped(p));
+                self.find_on_plane(frame_b, (a, frame_a), margin);
+                return self.raw[start..].iter_mut().for_each(|p| *p = swapped(p));
+            }
+            (Solid::Primitive(pa, _), Solid::Primitive(pb, _)) => {
+                if !self.primitives.add_points((pa, frame_a), (pb, frame_b), margin, &mut self.raw) {
+                    self.ask_parry((a, frame_a), (b, frame_b), margin, ManifoldBuffer::add_nearest);
+                }
                 return;
             }
-            (a, b) => {
-                let (ball_a, ball_b) = (ball_of(a), ball_of(b));
-                let shape_a = shape_of(a, &ball_a);
-                let shape_b = shape_of(b, &ball_b);
-                return self.manifolds.add_points((shape_a, frame_a), (shape_b, frame_b), margin, &mut self.raw);
-            }
+            _ => return self.ask_parry((a, frame_a), (b, frame_b), margin, ManifoldBuffer::add_points),
         };
         if one.gap < margin {
             self.raw.push(one);
         }
+    }
+
+    fn find_on_plane(&mut self, plane: &Frame, (convex, frame): (&Convex, &Frame), margin: f64) {
+        match &convex.core {
+            Core::Cuboid { half } => plane_cuboid(plane, frame, half, margin, &mut self.raw),
+            _ => self.primitives.add_plane_points(plane, (convex, frame), margin, &mut self.raw),
+        }
+    }
+
+    fn ask_parry(
+        &mut self,
+        (a, frame_a): (&Part, &Frame),
+        (b, frame_b): (&Part, &Frame),
+        margin: f64,
+        question: Question,
+    ) {
+        let (ball_a, ball_b) = (ball_of(&a.solid), ball_of(&b.solid));
+        let (shape_a, turn_a) = twin_of(&a.solid, &ball_a);
+        let (shape_b, turn_b) = twin_of(&b.solid, &ball_b);
+        let turned = |frame: &Frame, turn: &Mat3| Frame { rot: frame.rot * turn, pos: frame.pos };
+        let (frame_a, frame_b) = (turned(frame_a, &turn_a), turned(frame_b, &turn_b));
+        question(&mut self.manifolds, (shape_a, &frame_a), (shape_b, &frame_b), margin, &mut self.raw);
     }
 }
 
@@ -168,9 +199,9 @@ fn ball_of(solid: &Solid) -> Ball {
     Ball::new(if let Solid::Ball(radius) = solid { *radius } else { 0.0 })
 }
 
-fn shape_of<'a>(solid: &'a Solid, ball: &'a Ball) -> &'a dyn Shape {
+fn twin_of<'a>(solid: &'a Solid, ball: &'a Ball) -> (&'a dyn Shape, Mat3) {
     match solid {
-        Solid::Ball(_) => ball,
-        Solid::Cuboid(_, shape) | Solid::HalfSpace(shape) | Solid::Other(shape) => &**shape,
+        Solid::Ball(_) => (ball, Mat3::identity()),
+        Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Other(twin) => (&*twin.shape, twin.turn),
     }
 }

@@ -76,6 +76,16 @@ pub enum ContactError {
         /// Name of the collider.
         collider: String,
     },
+    /// A pair that is named a second time, either way round.
+    #[error("contact pair {pair} (\"{}\" and \"{}\") is the same as pair {first}; name it once", names[0], names[1])]
+    PairTwice {
+        /// Number of the pair, from zero.
+        pair: usize,
+        /// Names of the two colliders.
+        names: [String; 2],
+        /// Number of the pair that named them first.
+        first: usize,
+    },
     /// A parameter of a normal law is out of its range.
     #[error("normal law: {parameter} is {value}; it must be {range}")]
     LawParameter {

@@ -8,14 +8,17 @@
 //! # A pure function of the poses
 //!
 //! Nothing is warm-started and nothing remembered, so the points are the same whatever was asked before: snapshots,
-//! Runge–Kutta stages and replays see the same contact. Balls, and boxes on planes, are answered in closed form; all
-//! other pairs by parry3d's manifold generators from a cold start.
+//! Runge–Kutta stages and replays see the same contact. Balls, boxes, capsules, cylinders and planes are answered in closed
+//! form (the rim of a cylinder on an edge by bisection), with gaps exact to round-off, so that what rests stays at rest;
+//! hulls and meshes, the rims of two cylinders and deep overlaps by parry3d's algorithms from a cold start, to about 1e-9 m.
 //!
 //! # Identity
 //!
-//! [`ContactPoint::feature`] holds the pair of features (vertex, edge, face) that parry3d names, mixed with the part of a
-//! compound or the triangle of a mesh they belong to. Where one manifold names a pair of features twice, an ordinal along
-//! A tells them apart. Where features say nothing (a ball that rolls) it is constant, and the nearest position decides.
+//! [`ContactPoint::feature`] names the vertex of one body, or the edge of each, that makes the point, mixed with the part of
+//! a compound or the triangle of a mesh they belong to. It does not name faces, and where faces lie on each other both lend
+//! their normal, so nothing jumps when a resting body rocks by round-off. Where parry3d names a pair of features twice, an
+//! ordinal along A tells them apart. Where features say nothing (a ball that rolls) it is constant, and the nearest
+//! position decides.
 //!
 //! # Limits
 //!
@@ -24,12 +27,19 @@
 //! never touch.
 
 mod analytic;
+mod axes;
+mod convex;
+mod cylinder;
 mod detector;
 mod error;
 mod glob;
 mod manifold;
 mod normal;
+mod overlap;
+mod patch;
+mod primitive;
 mod reduce;
+mod rim;
 mod scene;
 mod shape;
 

@@ -41,16 +41,32 @@ impl ManifoldBuffer {
         for manifold in &self.manifolds {
             let (sub_a, sub_b) = (manifold.subshape1, manifold.subshape2);
             let normal_a = manifold.subshape_pos1().map_or(manifold.local_n1, |p| p.rotation * manifold.local_n1);
-            let normal = frame_a.rot * from_parry(normal_a);
+            // Concentric shapes have no direction to part in; any will do.
+            let normal = (frame_a.rot * from_parry(normal_a)).try_normalize(0.0).unwrap_or_else(Vec3::z);
             for point in manifold.points.iter().filter(|p| p.dist < margin) {
                 let local = manifold.subshape_pos1().map_or(point.local_p1, |p| p * point.local_p1);
                 let point_a = frame_a.point(&from_parry(local));
                 let feature = mix((u64::from(point.fid1.0) << 32) | u64::from(point.fid2.0), sub_a, sub_b);
                 self.keys.push((feature, order_key(&from_parry(local))));
-                out.push(Raw { feature, point_a, normal: normal.normalize(), gap: point.dist });
+                out.push(Raw { feature, point_a, normal, gap: point.dist });
             }
         }
         self.tell_apart(&mut out[start..]);
+    }
+
+    /// Adds the nearest or deepest point of two primitives, if nearer than `margin`.
+    pub(crate) fn add_nearest(
+        &mut self,
+        (a, frame_a): (&dyn Shape, &Frame),
+        (b, frame_b): (&dyn Shape, &Frame),
+        margin: f64,
+        out: &mut Vec<Raw>,
+    ) {
+        let (pose_a, pose_b) = (pose_to_parry(frame_a), pose_to_parry(frame_b));
+        if let Ok(Some(nearest)) = parry3d_f64::query::contact(&pose_a, a, &pose_b, b, margin) {
+            let normal = from_parry(nearest.normal1).try_normalize(0.0).unwrap_or_else(Vec3::z);
+            out.push(Raw { feature: u64::MAX, point_a: from_parry(nearest.point1), normal, gap: nearest.dist });
+        }
     }
 
     /// Empties the buffers; convex pairs keep theirs, so that nothing is allocated.

@@ -1,5 +1,7 @@
 //! What may touch what: checked, immutable, shared by all threads.
 
+use crate::convex::{Convex, Core};
+use crate::cylinder::Cylinder;
 use crate::{Collider, ContactError, Shape};
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::shape::SharedShape;
@@ -26,9 +28,22 @@ pub struct ContactPoint {
 #[derive(Clone)]
 pub(crate) enum Solid {
     Ball(f64),
-    Cuboid(Vec3, SharedShape),
-    HalfSpace(SharedShape),
-    Other(SharedShape),
+    Primitive(Convex, Twin),
+    HalfSpace(Twin),
+    Other(Twin),
+}
+
+/// The same piece as parry knows it, and its turn within the piece's frame (parry's cylinder stands along y).
+#[derive(Clone)]
+pub(crate) struct Twin {
+    pub(crate) shape: SharedShape,
+    pub(crate) turn: Mat3,
+}
+
+impl Twin {
+    fn new(shape: SharedShape) -> Self {
+        Self { shape, turn: Mat3::identity() }
+    }
 }
 
 /// One piece of a collider.
@@ -80,7 +95,12 @@ impl Scene {
             if a == b {
                 return Err(ContactError::SelfPair { pair: index, collider: colliders[a].name.clone() });
             }
-            pair_of[a.min(b) * n + a.max(b)] = index as u32;
+            let known = &mut pair_of[a.min(b) * n + a.max(b)];
+            if *known != NONE {
+                let names = [a, b].map(|i| colliders[i].name.clone());
+                return Err(ContactError::PairTwice { pair: index, names, first: *known as usize });
+            }
+            *known = index as u32;
         }
         Ok(Self { colliders, pairs, parts, pair_of })
     }
@@ -102,53 +122,55 @@ fn add_parts(collider: &Collider, shape: &Shape, pose: &Pose, parts: &mut Vec<Pa
             .iter()
             .try_for_each(|(child_pose, child)| add_parts(collider, child, &(pose * child_pose), parts));
     }
-    let (solid, turn) = solid_of(collider, shape)?;
-    let mut frame_bp = Frame::from(pose);
-    frame_bp.rot *= turn;
+    let solid = solid_of(collider, shape)?;
     let (half, centre) = bounds(&solid);
-    parts.push(Part { frame_bp, solid, half, centre });
+    parts.push(Part { frame_bp: Frame::from(pose), solid, half, centre });
     Ok(())
 }
 
-/// The piece, and its turn within the shape's frame (parry's cylinder stands along y).
-fn solid_of(collider: &Collider, shape: &Shape) -> Result<(Solid, Mat3), ContactError> {
-    let upright = Mat3::identity();
-    let solid = match shape {
+fn solid_of(collider: &Collider, shape: &Shape) -> Result<Solid, ContactError> {
+    let primitive = |core, radius, twin| Solid::Primitive(Convex { core, radius }, twin);
+    Ok(match shape {
         Shape::Ball { radius } => Solid::Ball(*radius),
-        Shape::Cuboid { half_extents: h } => Solid::Cuboid(*h, SharedShape::cuboid(h.x, h.y, h.z)),
-        Shape::HalfSpace => Solid::HalfSpace(SharedShape::halfspace(Vector::Z)),
-        Shape::Capsule { radius, half_length } => Solid::Other(SharedShape::capsule_z(*half_length, *radius)),
+        Shape::Cuboid { half_extents: h } => {
+            primitive(Core::Cuboid { half: *h }, 0.0, Twin::new(SharedShape::cuboid(h.x, h.y, h.z)))
+        }
+        Shape::HalfSpace => Solid::HalfSpace(Twin::new(SharedShape::halfspace(Vector::Z))),
+        Shape::Capsule { radius, half_length: half } => {
+            primitive(Core::Segment { half: *half }, *radius, Twin::new(SharedShape::capsule_z(*half, *radius)))
+        }
         Shape::Cylinder { radius, half_length } => {
             let turn = spatial::rotation_about(&Vec3::x(), std::f64::consts::FRAC_PI_2);
-            return Ok((Solid::Other(SharedShape::cylinder(*half_length, *radius)), turn));
+            let core = Core::Cylinder(Cylinder { radius: *radius, half: *half_length });
+            primitive(core, 0.0, Twin { shape: SharedShape::cylinder(*half_length, *radius), turn })
         }
         Shape::ConvexHull { vertices } => {
             let points: Vec<Vector> = vertices.iter().map(to_parry).collect();
             let hull = SharedShape::convex_hull(&points).filter(|h| h.mass_properties(1.0).mass() > 0.0);
-            Solid::Other(hull.ok_or_else(|| ContactError::DegenerateHull {
+            Solid::Other(Twin::new(hull.ok_or_else(|| ContactError::DegenerateHull {
                 collider: collider.name.clone(),
                 points: vertices.len(),
-            })?)
+            })?))
         }
         Shape::TriMesh { vertices, triangles } => {
             let mesh = SharedShape::trimesh(vertices.iter().map(to_parry).collect(), triangles.clone());
-            Solid::Other(mesh.map_err(|_| ContactError::DegenerateMesh {
+            Solid::Other(Twin::new(mesh.map_err(|_| ContactError::DegenerateMesh {
                 collider: collider.name.clone(),
                 triangles: triangles.len(),
-            })?)
+            })?))
         }
+        // Its children are pieces of their own; none is left.
         Shape::Compound(_) => Solid::Ball(0.0),
-    };
-    Ok((solid, upright))
+    })
 }
 
 fn bounds(solid: &Solid) -> (Vec3, Vec3) {
     match solid {
         Solid::Ball(radius) => (Vec3::repeat(*radius), Vec3::zeros()),
-        Solid::Cuboid(half, _) => (*half, Vec3::zeros()),
+        Solid::Primitive(convex, _) => (convex.half_extents(), Vec3::zeros()),
         Solid::HalfSpace(_) => (Vec3::repeat(f64::INFINITY), Vec3::zeros()),
-        Solid::Other(shape) => {
-            let aabb = shape.compute_local_aabb();
+        Solid::Other(twin) => {
+            let aabb = twin.shape.compute_local_aabb();
             (from_parry(aabb.half_extents()), from_parry(aabb.center()))
         }
     }

@@ -48,6 +48,9 @@ pub enum Shape {
     Compound(Vec<(Pose, Shape)>),
 }
 
+/// Thickness, relative to the size, below which points count as lying in a plane.
+const FLAT: f64 = 1e-9;
+
 /// A shape that is fixed in a body.
 #[derive(Clone, Debug)]
 pub struct Collider {
@@ -79,10 +82,13 @@ impl Collider {
                 self.check_size("half length", *half_length)
             }
             Shape::HalfSpace => Ok(()),
-            Shape::ConvexHull { vertices } => self.check_vertices(vertices),
+            Shape::ConvexHull { vertices } => {
+                self.check_vertices(vertices)?;
+                self.check_span(vertices)
+            }
             Shape::TriMesh { vertices, triangles } => {
                 self.check_vertices(vertices)?;
-                self.check_triangles(vertices.len(), triangles)
+                self.check_triangles(vertices, triangles)
             }
             Shape::Compound(parts) if parts.is_empty() => {
                 Err(ContactError::EmptyCompound { collider: self.name.clone() })
@@ -113,12 +119,33 @@ impl Collider {
         }
     }
 
-    fn check_triangles(&self, vertices: usize, triangles: &[[u32; 3]]) -> Result<(), ContactError> {
+    fn check_triangles(&self, vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), ContactError> {
         for (triangle, corners) in triangles.iter().enumerate() {
-            if let Some(&v) = corners.iter().find(|&&v| v as usize >= vertices) {
-                let (collider, vertex) = (self.name.clone(), v as usize);
+            if let Some(&v) = corners.iter().find(|&&v| v as usize >= vertices.len()) {
+                let (collider, vertex, vertices) = (self.name.clone(), v as usize, vertices.len());
                 return Err(ContactError::MeshIndex { collider, triangle, vertex, vertices });
             }
+        }
+        let area = |t: &[u32; 3]| {
+            let [p, q, r] = t.map(|i| vertices[i as usize]);
+            (q - p).cross(&(r - p)).norm()
+        };
+        if triangles.iter().any(|t| area(t) > 0.0) {
+            return Ok(());
+        }
+        Err(ContactError::DegenerateMesh { collider: self.name.clone(), triangles: triangles.len() })
+    }
+
+    /// Whether points span a volume: their spread along the third of three directions, each across those before.
+    fn check_span(&self, points: &[Vec3]) -> Result<(), ContactError> {
+        let mut arms: Vec<Vec3> = points.iter().map(|p| p - points[0]).collect();
+        let size = arms.iter().map(Vec3::norm).fold(0.0, f64::max);
+        for _ in 0..3 {
+            let longest = arms.iter().copied().max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+            let Some(direction) = longest.and_then(|v| v.try_normalize(FLAT * size)) else {
+                return Err(ContactError::DegenerateHull { collider: self.name.clone(), points: points.len() });
+            };
+            arms.iter_mut().for_each(|arm| *arm -= direction * direction.dot(arm));
         }
         Ok(())
     }

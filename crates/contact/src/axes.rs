@@ -1,0 +1,138 @@
+//! The direction along which two convex primitives are farthest apart (or overlap least).
+//!
+//! For every unit vector u the cores are at least  |u · p| − w_A(u) − w_B(u)  apart (p: from A's centre to B's, w: half
+//! widths), and some u attains the distance. For these cores it is one of few: the normal of a face of A or of B, the
+//! common perpendicular of an edge of each, or the direction from one to a corner of the other (separating axes,
+//! Gottschalk, Lin and Manocha 1996). A cylinder's rim against an edge is left
+//! to [`crate::rim`].
+//!
+//! # Which of equals
+//!
+//! Two faces that lie on each other are equally good axes, and round-off would choose. So:
+//!   * nearly parallel faces of A and B are *both* used: the normal is their weighted mean, the weights going smoothly from
+//!     one to the other as the difference of their separations passes ± [`BLEND`] of the smaller shape's extent;
+//!   * an edge pair whose normal lies within [`FLAT`] of a face's normal is passed over for the face: the overlap of the
+//!     faces has the point where those edges cross among its corners.
+
+use crate::convex::{Convex, Core};
+use spatial::{Frame, Vec3};
+
+/// Cosine of the angle (10°) between two normals below which they count as the same side.
+const FLAT: f64 = 0.984_807_753_012_208;
+/// Difference of separations, in extents of the smaller shape, over which the normal goes from one face's to the other's.
+const BLEND: f64 = 1e-2;
+/// Sine of the angle below which two edges have no common perpendicular.
+const PARALLEL: f64 = 1e-3;
+/// By how much, in extents, an edge pair must beat the faces.
+const PREFER_FACE: f64 = 1e-3;
+/// By how much, in extents, anything must beat what was found first: above round-off.
+const PREFER_FIRST: f64 = 1e-12;
+
+/// A direction from A to B and the distance of the cores along it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Axis {
+    /// Unit vector, A's axes.
+    pub(crate) normal: Vec3,
+    /// Separation of the cores, m; negative: overlap.
+    pub(crate) gap: f64,
+    /// Whether it is the normal of a face (of A, of B, or between).
+    pub(crate) face: bool,
+}
+
+/// Two primitives, B's pose in A.
+pub(crate) struct Couple<'a> {
+    pub(crate) a: &'a Convex,
+    pub(crate) b: &'a Convex,
+    pub(crate) frame_ab: Frame,
+    /// The smaller extent of the two, m.
+    pub(crate) scale: f64,
+}
+
+impl Couple<'_> {
+    /// The axis to use; `None` where some axis shows that the cores are farther apart than `margin`, m.
+    pub(crate) fn find_axis(&self, margin: f64) -> Option<Axis> {
+        let none = Axis { normal: Vec3::z(), gap: f64::NEG_INFINITY, face: false };
+        let (mut face_a, mut face_b, mut edges, mut points) = (none, none, none, none);
+        for &k in self.a.face_axes() {
+            self.improve(&mut face_a, Vec3::ith(k, 1.0), true);
+        }
+        for &k in self.b.face_axes() {
+            self.improve(&mut face_b, self.frame_ab.rot.column(k).into_owned(), true);
+        }
+        if face_a.gap.max(face_b.gap) > margin {
+            return None;
+        }
+        self.try_edges(&mut edges);
+        if self.a.is_round() || self.b.is_round() {
+            self.try_points(&mut points);
+        }
+        if edges.gap.max(points.gap) > margin {
+            return None;
+        }
+        let mut best = self.blend(&face_a, &face_b);
+        let is_flat = |face: &Axis| face.face && edges.normal.dot(&face.normal) > FLAT;
+        if edges.gap > best.gap + PREFER_FACE * self.scale && !is_flat(&face_a) && !is_flat(&face_b) {
+            best = edges;
+        }
+        Some(if points.gap > best.gap + PREFER_FIRST * self.scale { points } else { best })
+    }
+
+    /// Takes the unit vector `u` (A's axes, either way round) where the cores are farther apart along it.
+    #[inline]
+    fn improve(&self, best: &mut Axis, u: Vec3, face: bool) {
+        let apart = u.dot(&self.frame_ab.pos);
+        let gap = apart.abs() - self.a.half_width(&u) - self.b.half_width(&self.frame_ab.rot.tr_mul(&u));
+        if gap > best.gap + PREFER_FIRST * self.scale {
+            *best = Axis { normal: if apart < 0.0 { -u } else { u }, gap, face };
+        }
+    }
+
+    fn try_edges(&self, best: &mut Axis) {
+        for &i in self.a.edge_axes() {
+            let e = Vec3::ith(i, 1.0);
+            for &j in self.b.edge_axes() {
+                let u = e.cross(&self.frame_ab.rot.column(j));
+                let sine = u.norm();
+                if sine > PARALLEL {
+                    self.improve(best, u / sine, false);
+                }
+            }
+        }
+    }
+
+    /// Directions between one core and the other's corners or axis.
+    fn try_points(&self, best: &mut Axis) {
+        let Frame { rot, pos } = &self.frame_ab;
+        let (corners, count) = self.b.corners();
+        for corner in &corners[..count] {
+            if let Some(u) = self.a.direction_to(&self.frame_ab.point(corner)) {
+                self.improve(best, u, false);
+            }
+        }
+        let (corners, count) = self.a.corners();
+        for corner in &corners[..count] {
+            if let Some(u) = self.b.direction_to(&self.frame_ab.inverse_point(corner)) {
+                self.improve(best, rot * u, false);
+            }
+        }
+        for (convex, axis) in [(self.a, Vec3::z()), (self.b, rot.column(2).into_owned())] {
+            if matches!(convex.core, Core::Cylinder(_))
+                && let Some(u) = (pos - axis * axis.dot(pos)).try_normalize(0.0)
+            {
+                self.improve(best, u, false);
+            }
+        }
+    }
+
+    /// The better of two faces, or their mean where they are nearly parallel and nearly equal.
+    fn blend(&self, a: &Axis, b: &Axis) -> Axis {
+        let lead = (a.gap - b.gap) / (BLEND * self.scale);
+        if !(a.face && b.face) || a.normal.dot(&b.normal) < FLAT || lead.abs() >= 1.0 {
+            return if b.gap > a.gap + PREFER_FIRST * self.scale { *b } else { *a };
+        }
+        let x = 0.5 * (1.0 + lead);
+        let weight = x * x * (3.0 - 2.0 * x);
+        let normal = (weight * a.normal + (1.0 - weight) * b.normal).normalize();
+        Axis { normal, gap: a.gap.max(b.gap), face: true }
+    }
+}
