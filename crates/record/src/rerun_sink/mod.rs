@@ -48,11 +48,12 @@ pub fn encode_rrd(log: &Log, scene: &Scene, summary: &str) -> Result<Vec<u8>, Re
     let encode = || -> Result<Vec<u8>, Box<dyn std::error::Error>> {
         let (rec, storage) = builder(&log.meta.run_id()).memory()?;
         let look = Look::of_run(log, scene);
+        // First, so that a viewer lays out its views before the data come.
+        layout::send_blueprint(&rec, log, scene, &look)?;
         send_static(&rec, log, scene, &look)?;
         shapes::send_trails(&rec, log, scene, &look)?;
         rows::send_summary(&rec, summary)?;
         rows::send_rows(&rec, log, scene, &look)?;
-        layout::send_blueprint(&rec, log, scene, &look)?;
         Ok(storage.drain_as_bytes()?)
     };
     encode().map_err(|error| RecordError::Encode { what: "run.rrd", reason: error.to_string() })
