@@ -143,7 +143,13 @@ pub(crate) fn scene(mission: &Mission) -> Scene {
     if let Strategy::TrackAndGrasp(spec) = &mission.scenario.strategy {
         let index = |name: &str| name.split_once('/').and_then(|(v, l)| scene.link_index(v, l));
         let (tool, grapple) = (index(&spec.tool_frame), index(&spec.grapple_frame));
-        scene.close_up = grapple;
+        // Seen from the body that is captured, so that the camera stands outside it.
+        scene.close_up = mission
+            .robots
+            .iter()
+            .zip(&mission.scenario.vehicles)
+            .find(|(_, v)| v.name == spec.target)
+            .and_then(|(robot, v)| scene.link_index(&v.name, &robot.links[0].name));
         let trail = |name: &str, link: usize| Trail { name: name.to_owned(), link, point_l: Vec3::zeros() };
         scene.trails.extend(tool.map(|l| trail("tool", l)));
         scene.trails.extend(grapple.map(|l| trail("grapple point", l)));

@@ -134,13 +134,8 @@ impl<'a> Recorder<'a> {
         kept.extend(values.iter().zip(&self.keep).filter(|(_, k)| **k).map(|(v, _)| *v));
         write_poses(world, self.log.link_count(), poses);
         write_contact_samples(world, contacts);
-        let sample = Sample {
-            t: world.state().time,
-            step: world.state().steps,
-            values: kept,
-            poses_w: poses,
-            contacts,
-        };
+        let sample =
+            Sample { t: world.state().time, step: world.state().steps, values: kept, poses_w: poses, contacts };
         if let Some(live) = &mut self.live {
             live.push(&sample)?;
         }

@@ -18,9 +18,8 @@ const PANEL: (f64, f64) = (640.0, 250.0);
 const MARGIN: (f64, f64, f64, f64) = (70.0, 190.0, 34.0, 30.0);
 const COLUMNS: usize = 2;
 /// Colours that stay apart for most eyes (Okabe and Ito 2008), then lighter ones.
-const COLOURS: [&str; LINES] = [
-    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#5f5f5f", "#8c564b", "#bcbd22", "#9467bd",
-];
+const COLOURS: [&str; LINES] =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#5f5f5f", "#8c564b", "#bcbd22", "#9467bd"];
 
 /// The plots of a run.
 pub fn plot_svg(log: &Log) -> String {
@@ -59,12 +58,8 @@ fn add_panel(svg: &mut String, log: &Log, axes: &Axes) {
     let bottom_top = (PANEL.1 - MARGIN.3, MARGIN.2);
     let across = Scale::new(times.iter().copied(), left_right);
     let up = Scale::new(all, bottom_top);
-    let _ = writeln!(
-        svg,
-        "<text x=\"{}\" y=\"20\" font-weight=\"bold\">{}</text>",
-        MARGIN.0,
-        escape(&axes.title(&specs))
-    );
+    let _ =
+        writeln!(svg, "<text x=\"{}\" y=\"20\" font-weight=\"bold\">{}</text>", MARGIN.0, escape(&axes.title(&specs)));
     add_grid(svg, &across, &up);
     for event in &log.events {
         let x = across.at(event.t);
@@ -172,7 +167,8 @@ mod tests {
             let t = f64::from(k) * 0.01;
             let force = if k == 2500 { f64::NAN } else { t.sin() };
             let values = [1.0 / (1.0 + t), force, 0.0];
-            log.push(&Sample { t, step: u64::from(k), values: &values, poses_w: &[], contacts: &[] }).expect("well formed");
+            log.push(&Sample { t, step: u64::from(k), values: &values, poses_w: &[], contacts: &[] })
+                .expect("well formed");
         }
         let svg = plot_svg(&log);
         assert_eq!(svg.matches("<path").count(), 2, "an all-zero panel is left out");

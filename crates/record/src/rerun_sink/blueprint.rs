@@ -1,7 +1,9 @@
 //! A blueprint as a tree of containers and views, with the view properties that Rerun's own builder keeps private
 //! (camera, grid, legend, time axis) and with identifiers that are the same in every file.
 
-use rerun::blueprint::components::{ColumnShare, ContainerKind, IncludedContent, QueryExpression, RootContainer, RowShare};
+use rerun::blueprint::components::{
+    ColumnShare, ContainerKind, IncludedContent, QueryExpression, RootContainer, RowShare,
+};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::archetypes as bp;
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamError, SerializedComponentBatch};

@@ -81,7 +81,7 @@ fn left_side(log: &Log, scene: &Scene, look: &Look) -> Node {
 }
 
 fn overview(look: &Look) -> Node {
-    let eye = look.centre + Vec3::from(EYE_DIRECTION).normalize() * look.radius * 2.0;
+    let eye = look.centre + Vec3::from(EYE_DIRECTION).normalize() * look.radius * 1.35;
     let view = View::new("3D", "Overview", "/world");
     with_space_properties(view, eye, look.centre).into()
 }
@@ -93,7 +93,8 @@ fn close_up(scene: &Scene, link: usize, look: &Look) -> Node {
     let sideways = outwards.cross(&Vec3::z()).try_normalize(0.05).unwrap_or(Vec3::y());
     let distance = (0.25 * look.radius).clamp(0.4, 2.0);
     let eye = target + (0.6 * outwards + 0.7 * sideways + 0.4 * Vec3::z()).normalize() * distance;
-    let view = View::new("3D", "Close-up", link_path(scene, link)).with_contents(&["+ /world/**", "- /world/trails/**"]);
+    let view =
+        View::new("3D", "Close-up", link_path(scene, link)).with_contents(&["+ /world/**", "- /world/trails/**"]);
     with_space_properties(view, eye, target).into()
 }
 
@@ -148,7 +149,8 @@ fn front_and_others(all: Vec<Axes>) -> (Vec<Axes>, Vec<Axes>) {
 }
 
 fn plot(axes: &Axes, specs: &[&ChannelSpec]) -> Node {
-    let legend = bp::PlotLegend::new().with_corner(Corner2D::RightTop).with_visible(axes.channels.len() <= LEGEND_LINES);
+    let legend =
+        bp::PlotLegend::new().with_corner(Corner2D::RightTop).with_visible(axes.channels.len() <= LEGEND_LINES);
     let origin = axes.channels.first().map(|&i| axes_path(specs[i])).unwrap_or_else(rerun::EntityPath::root);
     View::new("TimeSeries", axes.title(specs), origin)
         .with("PlotLegend", &legend)

@@ -110,5 +110,9 @@ fn live_id(meta: &Meta) -> String {
 }
 
 fn lost(error: impl std::fmt::Display) -> RecordError {
-    RecordError::Viewer { url: format!("the stream of {APPLICATION_ID}"), reason: error.to_string(), version: VIEWER_VERSION }
+    RecordError::Viewer {
+        url: format!("the stream of {APPLICATION_ID}"),
+        reason: error.to_string(),
+        version: VIEWER_VERSION,
+    }
 }

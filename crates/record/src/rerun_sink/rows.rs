@@ -122,13 +122,18 @@ pub(super) fn send_events(rec: &RecordingStream, events: &[Event]) -> Sent {
         .with_many_level(events.iter().map(|event| level(event.kind)))
         .columns_of_unit_batches()?;
     rec.send_columns("events", times, columns)?;
-    let phases: Vec<&Event> = events.iter().filter(|event| event.kind == EventKind::Phase).collect();
+    let phases: Vec<&Event> = events.iter().filter(|event| starts_phase(event.kind)).collect();
     if phases.is_empty() {
         return Ok(());
     }
     let times = event_times(phases.iter().copied());
     let columns = rerun::StateChange::new().with_state(phases.iter().map(|event| event.text.as_str()));
     rec.send_columns("phase", times, columns.columns_of_unit_batches()?)
+}
+
+/// Events that the phase lane shows: what the strategy does, and what becomes of the target.
+fn starts_phase(kind: EventKind) -> bool {
+    matches!(kind, EventKind::Phase | EventKind::Capture | EventKind::Loss)
 }
 
 fn level(kind: EventKind) -> TextLogLevel {

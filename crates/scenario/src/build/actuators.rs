@@ -96,7 +96,10 @@ fn add(table: &mut ActuatorTable, actuator: &spec::Actuator, site: &Site<'_>, fa
                 let direction = frame.rot * actuator.kind.axis().unwrap_or_else(Vec3::x);
                 let position = frame.point(&Vec3::from(*position_m));
                 let body = site.body(v, l);
-                push(actuator.name.clone(), ActuatorKind::Thruster { body, position, direction, max_force: *max_force_n });
+                push(
+                    actuator.name.clone(),
+                    ActuatorKind::Thruster { body, position, direction, max_force: *max_force_n },
+                );
             }
         }
         spec::ActuatorKind::ReactionWheel { torque_limit_n_m, speed_rad_per_s, .. } => {

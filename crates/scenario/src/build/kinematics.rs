@@ -47,7 +47,8 @@ pub(crate) fn solve_pose(
 
 /// Coordinates that may move: index into q and v, and limits.
 fn movable_coordinates(tree: &Tree, names: &[String]) -> Vec<(usize, usize, Option<[f64; 2]>)> {
-    let own = tree.joints.iter().filter(|j| !j.is_mimic && matches!(j.kind, JointKind::Revolute | JointKind::Prismatic));
+    let own =
+        tree.joints.iter().filter(|j| !j.is_mimic && matches!(j.kind, JointKind::Revolute | JointKind::Prismatic));
     own.filter(|j| names.is_empty() || names.contains(&j.name))
         .map(|j| (j.q_index, j.v_index, j.position_limits))
         .collect()

@@ -103,7 +103,8 @@ fn samples(scenario: &Scenario) -> u64 {
 
 /// The file's words are ahead of the simulator's: what is understood and not yet simulated is refused, never ignored.
 fn refuse_what_is_not_simulated(scenario: &Scenario, faults: &mut Faults<'_>) {
-    let later = |what: &str| format!("{what} are read and checked, but not simulated in this version; remove the entry");
+    let later =
+        |what: &str| format!("{what} are read and checked, but not simulated in this version; remove the entry");
     if !scenario.effects.is_empty() {
         faults.add("effect[0]", later("effects"));
     }
@@ -121,9 +122,7 @@ fn environment(spec: &spec::Environment) -> Environment {
         spec::Environment::Orbit { mean_motion_rad_per_s, gravity_gradient } => {
             Environment::Orbit { mean_motion: mean_motion_rad_per_s, gravity_gradient }
         }
-        spec::Environment::Lab { gravity_m_per_s2 } => {
-            Environment::Uniform { gravity: Vec3::from(gravity_m_per_s2) }
-        }
+        spec::Environment::Lab { gravity_m_per_s2 } => Environment::Uniform { gravity: Vec3::from(gravity_m_per_s2) },
     }
 }
 

@@ -126,9 +126,7 @@ fn shape_of_kind(kind: &ShapeKind) -> Shape {
     match *kind {
         ShapeKind::Box { size_m } => Shape::Cuboid { half_extents: 0.5 * Vec3::from(size_m) },
         ShapeKind::Sphere { radius_m } => Shape::Ball { radius: radius_m },
-        ShapeKind::Cylinder { radius_m, length_m } => {
-            Shape::Cylinder { radius: radius_m, half_length: 0.5 * length_m }
-        }
+        ShapeKind::Cylinder { radius_m, length_m } => Shape::Cylinder { radius: radius_m, half_length: 0.5 * length_m },
         ShapeKind::Capsule { radius_m, length_m } if length_m > 0.0 => {
             Shape::Capsule { radius: radius_m, half_length: 0.5 * length_m }
         }

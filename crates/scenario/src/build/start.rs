@@ -90,7 +90,12 @@ fn reference_pose(world: &World, name: &str, key: &str, faults: &mut Faults<'_>)
     let (vehicle, link) = name.split_once('/').unwrap_or((name, ""));
     let model = world.model();
     let Some(v) = model.vehicle(vehicle) else {
-        faults.unknown(&format!("{key}.relative_to"), "vehicle", vehicle, model.vehicles.iter().map(|v| v.name.as_str()));
+        faults.unknown(
+            &format!("{key}.relative_to"),
+            "vehicle",
+            vehicle,
+            model.vehicles.iter().map(|v| v.name.as_str()),
+        );
         return None;
     };
     let links = &model.vehicles[v].tree.links;

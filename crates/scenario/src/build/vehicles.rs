@@ -7,10 +7,7 @@ use sim::VehicleSpec;
 use spatial::Vec3;
 
 /// Loads every vehicle's robot; `None` if one cannot be had, since nothing else can be checked then.
-pub(super) fn load(
-    scenario: &Scenario,
-    faults: &mut Faults<'_>,
-) -> Option<(Vec<RobotDescription>, Vec<VehicleSpec>)> {
+pub(super) fn load(scenario: &Scenario, faults: &mut Faults<'_>) -> Option<(Vec<RobotDescription>, Vec<VehicleSpec>)> {
     let dir = scenario.source.file_dir();
     let mut loaded = Vec::with_capacity(scenario.vehicles.len());
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {

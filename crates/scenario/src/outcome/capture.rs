@@ -97,7 +97,8 @@ impl CaptureWatch {
             let owner = |body: usize| world.model().owners.get(body).map(|o| o.0);
             let pair = (owner(a), owner(b));
             t.normal_force > 0.0
-                && (pair == (Some(self.servicer), Some(self.target)) || pair == (Some(self.target), Some(self.servicer)))
+                && (pair == (Some(self.servicer), Some(self.target))
+                    || pair == (Some(self.target), Some(self.servicer)))
         });
         self.untouched_since = if touching { None } else { self.untouched_since.or(Some(time)) };
         let loss = if self.untouched_since.is_some_and(|since| time - since > PATIENCE) {
@@ -131,10 +132,16 @@ impl CaptureWatch {
         }
         let Some(time) = self.grasp_time else {
             let mm = 1e3 * self.nearest;
-            return ("not-reached", format!("the fingers never closed on the bar; the tool came within {mm:.0} mm of it"));
+            return (
+                "not-reached",
+                format!("the fingers never closed on the bar; the tool came within {mm:.0} mm of it"),
+            );
         };
         if self.phase != Some(Phase::Hold) {
-            return ("not-finished", format!("gripped at t = {time:.2} s, but the run ended before the motion was stopped"));
+            return (
+                "not-finished",
+                format!("gripped at t = {time:.2} s, but the run ended before the motion was stopped"),
+            );
         }
         if rate > STOPPED.0 || speed > STOPPED.1 {
             let text = format!("held, but still moving at {:.3} deg/s and {:.2} mm/s", rate.to_degrees(), 1e3 * speed);

@@ -96,7 +96,11 @@ impl Judge {
             add("grasp_time_s", optional(capture.grasp_time), "time at which the fingers held the bar");
             add("stopped_time_s", optional(capture.stopped_time), "time at which the relative motion was stopped");
             add("grasp_slip_m", capture.slip.into(), "largest motion of the bar in the fingers, elastic part included");
-            add("grasp_rotation_deg", capture.rotation.to_degrees().into(), "largest rotation of the bar in the fingers");
+            add(
+                "grasp_rotation_deg",
+                capture.rotation.to_degrees().into(),
+                "largest rotation of the bar in the fingers",
+            );
             add("residual_rate_deg_per_s", rate.to_degrees().into(), "angular rate between the two buses at the end");
             add("residual_speed_m_per_s", speed.into(), "speed between tool and grapple frame at the end");
         }
@@ -108,7 +112,11 @@ impl Judge {
             add("held_points", creep.points.into(), "touching points held through the last seconds");
             add("creep_slip_m", creep.slip.into(), "slip of held points in the last seconds, less elastic deflection");
             add("creep_rotation_rad", creep.rotation.into(), "rotation of held points likewise");
-            add("held_motion_m", creep.total_slip.into(), "motion of held points in the last seconds, elastic part included");
+            add(
+                "held_motion_m",
+                creep.total_slip.into(),
+                "motion of held points in the last seconds, elastic part included",
+            );
             add("held_rotation_rad", creep.total_rotation.into(), "rotation of the held body likewise");
         }
         self.add_accounts(world, &mut metrics);
@@ -118,7 +126,11 @@ impl Judge {
     fn add_accounts(&self, world: &World, metrics: &mut Vec<Metric>) {
         let mut add = |name, value: f64, meaning| metrics.push(Metric { name, value: value.into(), meaning });
         if let Some(audit) = &self.audit {
-            add("momentum_drift_linear", audit.linear_drift, "drift of linear momentum over the largest Σ m‖v‖, from the links");
+            add(
+                "momentum_drift_linear",
+                audit.linear_drift,
+                "drift of linear momentum over the largest Σ m‖v‖, from the links",
+            );
             add("momentum_drift_angular", audit.angular_drift, "drift of angular momentum over the largest Σ ‖L_link‖");
         }
         let (now, account) = (Energy::of(world), world.state().account);

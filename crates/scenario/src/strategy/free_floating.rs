@@ -67,7 +67,9 @@ impl Arm {
         let mut mass = vec![0.0; n * n];
         Dynamics::new(tree).calc_mass_matrix(tree, kin, &[], &mut mass, n);
         let locked = Mat6::from_fn(|i, j| mass[i * n + j]);
-        let Some(locked) = locked.cholesky() else { return (self.coordinates.iter().map(own).collect(), Vec6::zeros()) };
+        let Some(locked) = locked.cholesky() else {
+            return (self.coordinates.iter().map(own).collect(), Vec6::zeros());
+        };
         let j_base = Mat6::from_fn(|i, j| stacked(&columns[j])[i]);
         let coupling = |k: &usize| Vec6::from_fn(|i, _| mass[i * n + 6 + k]);
         let reduced = |k: &usize| own(k) - j_base * locked.solve(&coupling(k));

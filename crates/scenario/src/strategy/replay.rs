@@ -46,7 +46,12 @@ pub(super) fn build(
             faults.unknown("strategy.mapping", "actuator", name, valid);
         }
         let Some(values) = recording.values(channel) else {
-            faults.unknown("strategy.mapping", "channel", channel, recording.channels.iter().map(|c| c.spec.name.as_str()).collect::<Vec<_>>());
+            faults.unknown(
+                "strategy.mapping",
+                "channel",
+                channel,
+                recording.channels.iter().map(|c| c.spec.name.as_str()).collect::<Vec<_>>(),
+            );
             continue;
         };
         courses.extend(found.into_iter().map(|a| course(model, a, &recording.times, values)));

@@ -130,7 +130,8 @@ pub(super) fn build(
     let (target, grapple) = frame_of(model, &spec.grapple_frame, "strategy.grapple_frame", faults)?;
     let drives = arm_drives(spec, model, vehicle, link);
     if drives.len() < 6 {
-        faults.add("strategy.tool_frame", "the tool needs six or more joints with a joint-drive between it and the base");
+        faults
+            .add("strategy.tool_frame", "the tool needs six or more joints with a joint-drive between it and the base");
         return None;
     }
     let fingers = fingers_of(spec, model, table, vehicle, faults)?;
@@ -197,7 +198,8 @@ fn fingers_of(
         let coordinate = owner.v0 + joint.v_index;
         let acts = |a: &usize| matches!(table.actuators[*a].kind, ActuatorKind::JointDrive { coordinate: c, stiffness, .. } if c == coordinate && stiffness == 0.0);
         let Some(actuator) = (0..table.actuators.len()).find(acts) else {
-            let reason = format!("joint \"{name}\" needs a joint-drive of zero stiffness: a rate loop with a force limit");
+            let reason =
+                format!("joint \"{name}\" needs a joint-drive of zero stiffness: a rate loop with a force limit");
             faults.add("strategy.gripper", reason);
             return None;
         };
@@ -355,9 +357,9 @@ impl Grasper {
         // Two hands on one bar: what the fingers settle between them, position control may not fight.
         let error = if felt { Twist::default() } else { calc_bounded_error(&tool, &goal, LONGEST) };
         let n = self.drives.len();
-        let comfort = |(i, d): (usize, &ArmDrive)| COMFORT * (memory[slot::JOINTS + 2 * n + i] - world.state().q[d.q_index]);
-        let wish: Vec<f64> =
-            self.drives.iter().enumerate().map(|d| if felt { 0.0 } else { comfort(d) }).collect();
+        let comfort =
+            |(i, d): (usize, &ArmDrive)| COMFORT * (memory[slot::JOINTS + 2 * n + i] - world.state().q[d.q_index]);
+        let wish: Vec<f64> = self.drives.iter().enumerate().map(|d| if felt { 0.0 } else { comfort(d) }).collect();
         let request = RateRequest {
             twist: lead + error * self.spec.tracking_bandwidth_per_s,
             damping: self.spec.jacobian_damping,
@@ -419,7 +421,9 @@ impl Grasper {
         }
         let rise = if memory[slot::TOUCHED] < 0.0 { 0.0 } else { ((time - memory[slot::TOUCHED]) / RISE).min(1.0) };
         for finger in &self.fingers {
-            let ActuatorKind::JointDrive { damping, .. } = world.model().actuators[finger.actuator].kind else { continue };
+            let ActuatorKind::JointDrive { damping, .. } = world.model().actuators[finger.actuator].kind else {
+                continue;
+            };
             let velocity = if closes { self.spec.closing_speed_m_per_s } else { 0.0 };
             // At standstill the rate loop alone presses with damping × velocity.
             let missing = finger.count * self.spec.closing_force_n - damping * velocity;
@@ -438,7 +442,8 @@ impl Grasper {
             memory[slot::STEADY] = time;
         }
         let settle = if matches!(phase, Phase::Reach | Phase::Damp) { 0.0 } else { SETTLE };
-        let late = matches!(phase, Phase::Approach | Phase::Close) && time - memory[slot::SINCE] > PATIENCE + self.approach_time();
+        let late = matches!(phase, Phase::Approach | Phase::Close)
+            && time - memory[slot::SINCE] > PATIENCE + self.approach_time();
         if late {
             self.enter(world, memory, Phase::Abort);
         } else if ready && time - memory[slot::STEADY] >= settle {
