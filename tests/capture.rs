@@ -1,5 +1,5 @@
 //! Twenty tumbles and grapple offsets that were not used while tuning; and determinism of whole runs.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod support;
 
@@ -47,7 +47,9 @@ fn eighteen_of_twenty_unseen_tumbles_are_captured_and_each_part_of_the_strategy_
     let full = captured(None);
     let without_prediction = captured(Some("strategy.prediction=false"));
     let without_rates = captured(Some("strategy.rate_matching=false"));
-    println!("\ncaptured of 20: {full}; without prediction {without_prediction}; without rate matching {without_rates}");
+    println!(
+        "\ncaptured of 20: {full}; without prediction {without_prediction}; without rate matching {without_rates}"
+    );
     assert!(full >= 18);
     assert!(without_prediction < full && without_rates < full);
 }

@@ -6,7 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn softdock(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_softdock")).args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_softdock"))
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap()
 }
 
 fn error_of(output: &Output) -> String {
@@ -55,7 +59,15 @@ fn no_rrd_writes_none() {
 fn an_expectation_that_fails_is_status_1() {
     let dir = tempfile::tempdir().unwrap();
     let out = place(&dir, "run");
-    let slippery = ["run", "scenarios/tumbling-capture.toml", "--no-rrd", "--set", "contact[0].friction.mu=0.02", "--out", text(&out)];
+    let slippery = [
+        "run",
+        "scenarios/tumbling-capture.toml",
+        "--no-rrd",
+        "--set",
+        "contact[0].friction.mu=0.02",
+        "--out",
+        text(&out),
+    ];
     let output = softdock(&slippery);
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -77,7 +89,14 @@ fn divergence_is_status_4_with_time_and_body() {
     let out = place(&dir, "run");
     // Explicit forces at a step far beyond the stability limit of the pads.
     let wild = [
-        "run", "scenarios/peer-grasp.toml", "--no-rrd", "--out", text(&out), "--set", "integrator.kind=rk4", "--set",
+        "run",
+        "scenarios/peer-grasp.toml",
+        "--no-rrd",
+        "--out",
+        text(&out),
+        "--set",
+        "integrator.kind=rk4",
+        "--set",
         "integrator.step_s=0.01",
     ];
     let output = softdock(&wild);

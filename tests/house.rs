@@ -71,8 +71,19 @@ fn no_file_is_longer_than_the_wall() {
 #[test]
 fn the_top_level_is_bare() {
     let allowed = [
-        "Cargo.toml", "Cargo.lock", "LICENSE-MIT", "LICENSE-APACHE", "README.md", "rust-toolchain.toml", "crates", "robots",
-        "scenarios", "tests", "benches", "target", "out",
+        "Cargo.toml",
+        "Cargo.lock",
+        "LICENSE-MIT",
+        "LICENSE-APACHE",
+        "README.md",
+        "rust-toolchain.toml",
+        "crates",
+        "robots",
+        "scenarios",
+        "tests",
+        "benches",
+        "target",
+        "out",
     ];
     for entry in fs::read_dir(root()).unwrap().map(Result::unwrap) {
         let name = entry.file_name().into_string().unwrap();

@@ -73,7 +73,9 @@ fn replayed_commands_repeat_the_run() {
 #[test]
 fn third_party_robots_run_in_a_scenario() {
     let Ok(packages) = std::env::var("SOFTDOCK_THIRD_PARTY_ROBOTS") else {
-        eprintln!("SKIPPED: set SOFTDOCK_THIRD_PARTY_ROBOTS to a site-packages folder with example-robot-data and pybullet");
+        eprintln!(
+            "SKIPPED: set SOFTDOCK_THIRD_PARTY_ROBOTS to a site-packages folder with example-robot-data and pybullet"
+        );
         return;
     };
     let data = format!("{packages}/cmeel.prefix/share/example-robot-data/robots");
@@ -90,9 +92,11 @@ fn third_party_robots_run_in_a_scenario() {
              kind = \"joint-drive\"\njoints = [\"arm/*joint*\"]\nstiffness_n_m_per_rad = 2000.0\ndamping_n_m_s_per_rad = 100.0\n"
         );
         // The Panda's fingers slide; its arm is named by number.
-        let text = text.replace("arm/*joint*\"]", if robot.contains("panda") { "arm/panda_joint?\"]" } else { "arm/*joint*\"]" });
+        let text = text
+            .replace("arm/*joint*\"]", if robot.contains("panda") { "arm/panda_joint?\"]" } else { "arm/*joint*\"]" });
         let text = if robot.contains("kuka") { text.replace("arm/*joint*", "arm/lbr_iiwa_joint_*") } else { text };
-        let spec = scenario::parse(&text, &root().join("third-party.toml").display().to_string(), &[]).unwrap_or_else(|e| panic!("{e}"));
+        let spec = scenario::parse(&text, &root().join("third-party.toml").display().to_string(), &[])
+            .unwrap_or_else(|e| panic!("{e}"));
         let (mission, outcome) = run(&spec);
         assert_eq!(outcome.outcome, "completed", "{robot}: {}", outcome.reason);
         assert!(mission.world.state().v.iter().all(|v| v.abs() < 1.0), "{robot} does not hold still");

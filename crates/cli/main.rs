@@ -2,6 +2,8 @@
 //!
 //! Exit status: 0 as expected; 1 an expectation failed; 2 usage; 3 bad input; 4 diverged.
 
+#![allow(clippy::print_stdout)] // a command prints
+
 mod check;
 mod live;
 mod new;

@@ -38,7 +38,7 @@ impl Islands {
             rows: model.vehicles.iter().map(|v| vec![HELD; 6 + v.tree.nv]).collect(),
             size: vec![0; model.vehicles.len()],
             start: vec![0; model.vehicles.len()],
-            matrix: vec![0.0; n * n],
+            matrix: vec![0.0; n * (n + LANES)],
             rhs: model.vehicles.iter().map(|_| Vec::with_capacity(n)).collect(),
             scratch: vec![0.0; largest * largest],
         }
@@ -66,7 +66,7 @@ impl Islands {
         let mut start = 0;
         for (i, size) in self.size.iter().enumerate() {
             self.start[i] = start;
-            start += size * size;
+            start += size * padded(*size);
             self.rhs[i].clear();
             self.rhs[i].resize(*size, 0.0);
         }
@@ -91,7 +91,7 @@ pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
     }
     add_cross_terms(model, ws);
     let Islands { size, start, matrix, .. } = &mut ws.islands;
-    size.iter().zip(start.iter()).all(|(n, at)| cholesky(&mut matrix[*at..*at + n * n], *n))
+    size.iter().zip(start.iter()).all(|(n, at)| cholesky(&mut matrix[*at..*at + n * padded(*n)], *n))
 }
 
 fn add_vehicle(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
@@ -101,7 +101,7 @@ fn add_vehicle(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
     let islands = &mut ws.islands;
     ws.dynamics[i].calc_mass_matrix(&vehicle.tree, &ws.kin[i], extra, &mut islands.scratch[..n * n], n);
     let group = islands.group[i];
-    let (at, stride, rows) = (islands.start[group], islands.size[group], &islands.rows[i]);
+    let (at, stride, rows) = (islands.start[group], padded(islands.size[group]), &islands.rows[i]);
     for (k, &row) in rows.iter().enumerate().filter(|(_, r)| **r != HELD) {
         let target = &mut islands.matrix[at + row * stride..at + (row + 1) * stride];
         for (l, &column) in rows.iter().enumerate().filter(|(_, c)| **c != HELD) {
@@ -127,33 +127,46 @@ fn add_cross_terms(model: &Model, ws: &mut Workspace) {
             }
             i += 1;
         }
-        if let Some((&(va, la), &(vb, lb))) = both {
+        if let Some((&(va, la), &(vb, lb))) = both
+            && coupling != SpatialMatrix::default()
+        {
             let islands = &mut ws.islands;
             let group = islands.group[va];
-            let (at, n) = (islands.start[group], islands.size[group]);
+            let (at, stride) = (islands.start[group], padded(islands.size[group]));
             let (rows_a, rows_b, matrix) = (&islands.rows[va], &islands.rows[vb], &mut islands.matrix[at..]);
-            for_path(&model.vehicles[vb].tree, &ws.kin[vb], lb, |l, screw_b| {
-                let column = rows_b[l];
-                let wrench = coupling.mul(screw_b);
-                for_path(&model.vehicles[va].tree, &ws.kin[va], la, |k, screw_a| {
-                    let row = rows_a[k];
+            let mut subtract = |column: usize, wrench: &Wrench| {
+                let mut entry = |row: usize, value: f64| {
                     if row != HELD && column != HELD {
-                        let value = screw_a.dot(&wrench);
-                        matrix[row * n + column] -= value;
-                        matrix[column * n + row] -= value;
+                        matrix[row * stride + column] -= value;
+                        matrix[column * stride + row] -= value;
                     }
-                });
-            });
+                };
+                for k in 0..3 {
+                    entry(rows_a[k], wrench.moment[k]);
+                    entry(rows_a[3 + k], wrench.force[k]);
+                }
+                for_path(&model.vehicles[va].tree, &ws.kin[va], la, |k, screw| entry(rows_a[k], screw.dot(wrench)));
+            };
+            for (l, column) in rows_b.iter().take(6).enumerate() {
+                subtract(*column, &column_of(&coupling, l));
+            }
+            for_path(&model.vehicles[vb].tree, &ws.kin[vb], lb, |l, screw| subtract(rows_b[l], &coupling.mul(screw)));
         }
     }
 }
 
-/// Visits the freedoms that move a body, with their screws: base first, then from the tip inwards.
-fn for_path(tree: &Tree, kin: &Kinematics, body: usize, mut visit: impl FnMut(usize, &Twist)) {
-    for k in 0..3 {
-        visit(k, &Twist::new(Vec3::ith(k, 1.0), Vec3::zeros()));
-        visit(3 + k, &Twist::new(Vec3::zeros(), Vec3::ith(k, 1.0)));
+/// What a unit of the base's freedom `k` gives.
+fn column_of(matrix: &SpatialMatrix, k: usize) -> Wrench {
+    let column = |m: &spatial::Mat3| m.column(k % 3).into_owned();
+    if k < 3 {
+        Wrench::new(column(&matrix.ma), column(&matrix.fa))
+    } else {
+        Wrench::new(column(&matrix.ml), column(&matrix.fl))
     }
+}
+
+/// Visits the joint freedoms that move a body, with their screws, from the tip inwards.
+fn for_path(tree: &Tree, kin: &Kinematics, body: usize, mut visit: impl FnMut(usize, &Twist)) {
     let mut at = body;
     while at != 0 {
         let joint = &tree.joints[at - 1];
@@ -180,7 +193,7 @@ pub(crate) fn solve(model: &Model, ws: &mut Workspace, h: f64) {
     }
     let Islands { size, start, matrix, rhs, .. } = &mut ws.islands;
     for i in 0..size.len() {
-        back_substitute(&matrix[start[i]..start[i] + size[i] * size[i]], &mut rhs[i]);
+        back_substitute(&matrix[start[i]..start[i] + size[i] * padded(size[i])], &mut rhs[i]);
     }
     for i in 0..model.vehicles.len() {
         read_gains(model, ws, i);
@@ -225,45 +238,55 @@ fn read_gains(model: &Model, ws: &mut Workspace, i: usize) {
     }
 }
 
-/// A = UᵀU in place, upper triangle.
+/// Columns that are summed in registers at a time; rows are padded to a multiple.
+const LANES: usize = 8;
+
+/// Length of a padded row.
+fn padded(n: usize) -> usize {
+    n.next_multiple_of(LANES)
+}
+
+/// A = UᵀU in place, upper triangle, `n` rows of `padded(n)`; a row's columns are summed in registers over all rows above.
 fn cholesky(a: &mut [f64], n: usize) -> bool {
+    let stride = padded(n);
     for k in 0..n {
-        let (above, below) = a.split_at_mut((k + 1) * n);
-        let pivot_row = &mut above[k * n + k..];
-        let pivot = pivot_row[0];
+        let (above, rest) = a.split_at_mut(k * stride);
+        let row = &mut rest[..stride];
+        for (b, x) in row.as_chunks_mut::<LANES>().0.iter_mut().enumerate().skip(k / LANES) {
+            let mut sum = *x;
+            for u in above.chunks_exact(stride) {
+                let factor = u[k];
+                for (s, y) in sum.iter_mut().zip(&u[b * LANES..(b + 1) * LANES]) {
+                    *s -= factor * y;
+                }
+            }
+            *x = sum;
+        }
+        let pivot = row[k];
         if pivot.is_nan() || pivot <= 0.0 {
             return false;
         }
         let inverse = 1.0 / pivot.sqrt();
-        pivot_row.iter_mut().for_each(|x| *x *= inverse);
-        for i in k + 1..n {
-            let factor = pivot_row[i - k];
-            if factor != 0.0 {
-                let row = &mut below[(i - k - 1) * n + i..(i - k) * n];
-                for (x, p) in row.iter_mut().zip(&pivot_row[i - k..]) {
-                    *x -= factor * p;
-                }
-            }
-        }
+        row[k / LANES * LANES..].iter_mut().for_each(|x| *x *= inverse);
     }
     true
 }
 
 /// x with UᵀU x = b, in place.
 fn back_substitute(u: &[f64], b: &mut [f64]) {
-    let n = b.len();
+    let (n, stride) = (b.len(), padded(b.len()));
     for k in 0..n {
-        b[k] /= u[k * n + k];
+        b[k] /= u[k * stride + k];
         let value = b[k];
         for i in k + 1..n {
-            b[i] -= u[k * n + i] * value;
+            b[i] -= u[k * stride + i] * value;
         }
     }
     for k in (0..n).rev() {
         let mut value = b[k];
         for i in k + 1..n {
-            value -= u[k * n + i] * b[i];
+            value -= u[k * stride + i] * b[i];
         }
-        b[k] = value / u[k * n + k];
+        b[k] = value / u[k * stride + k];
     }
 }
