@@ -12,7 +12,8 @@
 //!   * nearly parallel faces of A and B are *both* used: the normal is their weighted mean, the weights going smoothly from
 //!     one to the other as the difference of their separations passes ± [`BLEND`] of the smaller shape's extent;
 //!   * an edge pair whose normal lies within [`FLAT`] of a face's normal is passed over for the face: the overlap of the
-//!     faces has the point where those edges cross among its corners.
+//!     faces has the point where those edges cross among its corners. Where the faces of both are nearly parallel, edges are
+//!     not asked at all: their perpendiculars are all nearly normals of faces.
 
 use crate::convex::{Convex, Core};
 use spatial::{Frame, Vec3};
@@ -62,7 +63,10 @@ impl Couple<'_> {
         if face_a.gap.max(face_b.gap) > margin {
             return None;
         }
-        self.try_edges(&mut edges);
+        let both_flat = face_a.face && face_b.face && face_a.normal.dot(&face_b.normal) > FLAT;
+        if !both_flat {
+            self.try_edges(&mut edges);
+        }
         if self.a.is_round() || self.b.is_round() {
             self.try_points(&mut points);
         }

@@ -62,7 +62,7 @@ impl NormalLaw {
     pub fn eval(&self, gap: f64, gap_rate: f64) -> NormalForce {
         let (depth, rate) = (-gap, -gap_rate);
         // Written so that NaN gives no force here: the step reports divergence from the state, with time and body.
-        if !(depth > 0.0) {
+        if depth.is_nan() || depth <= 0.0 {
             return NormalForce::default();
         }
         match *self {

@@ -63,7 +63,11 @@ fn gaps_of_a_smooth_motion_are_smooth_to_round_off() {
     for shape in shapes {
         for ground in [cuboid(1.0, 1.0, 0.1), Shape::HalfSpace] {
             let top = if ground == Shape::HalfSpace { 0.0 } else { 0.1 };
-            let lying = if matches!(shape, Shape::Capsule { .. }) { Vec3::y() * 1.5707 } else { Vec3::zeros() };
+            let lying = if matches!(shape, Shape::Capsule { .. }) {
+                std::f64::consts::FRAC_PI_2 * Vec3::y()
+            } else {
+                Vec3::zeros()
+            };
             let mut two = Two::new(ground, shape.clone());
             let mut gap = |i: usize| {
                 let x = 1e-5 * i as f64;
