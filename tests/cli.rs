@@ -146,7 +146,7 @@ fn check_tells_every_fault_of_a_robot() {
 }
 
 #[test]
-fn new_writes_a_scenario_that_checks_and_never_overwrites() {
+fn new_writes_a_scenario_that_captures_and_never_overwrites() {
     let output = softdock(&["new", "a/b"]);
     assert_eq!(output.status.code(), Some(3));
     let dir = tempfile::tempdir().unwrap();
@@ -155,8 +155,11 @@ fn new_writes_a_scenario_that_checks_and_never_overwrites() {
     let folder = place(&dir, "scenarios");
     let output = softdock(&["new", "mine", "--dir", text(&folder)]);
     assert_eq!(output.status.code(), Some(0), "{}", error_of(&output));
-    let output = softdock(&["check", text(&folder.join("mine.toml"))]);
+    let mine = folder.join("mine.toml");
+    let output = softdock(&["check", text(&mine)]);
     assert_eq!(output.status.code(), Some(0), "{}", error_of(&output));
+    let output = softdock(&["run", text(&mine), "--no-rrd", "--out", text(&place(&dir, "out"))]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stdout));
     assert_eq!(softdock(&["new", "mine", "--dir", text(&folder)]).status.code(), Some(3));
 }
 

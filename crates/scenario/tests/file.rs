@@ -38,7 +38,7 @@ fn starter_loads_with_every_commented_section_uncommented() {
         })
         .collect();
     let scenario = parse(&text.join("\n"), "x.toml", &[]).unwrap_or_else(|errors| panic!("{errors}"));
-    assert_eq!((scenario.shapes.len(), scenario.actuators.len(), scenario.effects.len()), (1, 1, 1));
+    assert_eq!((scenario.shapes.len(), scenario.actuators.len(), scenario.effects.len()), (1, 3, 1));
     assert_eq!(scenario.contact_default.friction, FrictionLaw::None);
 }
 
