@@ -225,16 +225,22 @@ pub fn axes_of<'a>(specs: impl IntoIterator<Item = &'a ChannelSpec>) -> Vec<Axes
     all
 }
 
-/// Drops the dotted words that all names share at the front and at the end.
+/// Drops the dotted words that all names share at the front and at the end, then the vehicle that all share.
 fn short_labels(names: &[&str]) -> Vec<String> {
     let words: Vec<Vec<&str>> = names.iter().map(|name| name.split('.').collect()).collect();
     let shortest = words.iter().map(Vec::len).min().unwrap_or(0);
     let limit = shortest.saturating_sub(1);
     let same = |i: usize| words.iter().all(|w| w[i] == words[0][i]);
-    let front = (0..limit).take_while(|&i| same(i)).count();
+    let alone = names.len() < 2;
+    let front = if alone { limit.min(1) } else { (0..limit).take_while(|&i| same(i)).count() };
     let same_back = |i: usize| words.iter().all(|w| w[w.len() - 1 - i] == words[0][words[0].len() - 1 - i]);
-    let back = if names.len() < 2 { 0 } else { (0..limit - front).take_while(|&i| same_back(i)).count() };
-    words.iter().map(|w| w[front..w.len() - back].join(".")).collect()
+    let back = if alone { 0 } else { (0..limit - front).take_while(|&i| same_back(i)).count() };
+    let labels: Vec<String> = words.iter().map(|w| w[front..w.len() - back].join(".")).collect();
+    let vehicle = labels.first().and_then(|label| label.split_once('/')).map(|(vehicle, _)| format!("{vehicle}/"));
+    match vehicle.filter(|vehicle| labels.iter().all(|label| label.starts_with(vehicle.as_str()))) {
+        Some(vehicle) => labels.iter().map(|label| label[vehicle.len()..].to_string()).collect(),
+        None => labels,
+    }
 }
 
 /// The dotted words that all names share at the end (`position`), empty for a single name.
@@ -255,8 +261,10 @@ mod tests {
     #[test]
     fn labels_keep_only_what_tells_channels_apart() {
         let names = ["joint.servicer/elbow.position", "joint.servicer/wrist.position"];
-        assert_eq!(short_labels(&names), ["servicer/elbow", "servicer/wrist"]);
+        assert_eq!(short_labels(&names), ["elbow", "wrist"]);
+        assert_eq!(short_labels(&["joint.a/hip.effort", "joint.b/hip.effort"]), ["a/hip", "b/hip"]);
         assert_eq!(short_labels(&["relative.distance"]), ["distance"]);
+        assert_eq!(short_labels(&["joint.servicer/finger.position"]), ["finger.position"]);
         assert_eq!(short_labels(&["t"]), ["t"]);
         assert_eq!(short_labels(&["a", "a.b"]), ["a", "a.b"]);
     }

@@ -1,7 +1,7 @@
 //! Plots of a run as one SVG: the signals that matter in a grid, for readers without a viewer.
 //!
 //! One panel per set of axes ([`crate::Axes`]): time across, one line per channel, a legend with each channel's last value,
-//! and a dashed line at every event. Lines are thinned to what the panel's width can show: least and largest value per pixel.
+//! and a dashed line at every event; the events in words at the end. Lines are thinned to what the panel's width can show: least and largest value per pixel.
 
 mod scale;
 
@@ -17,6 +17,8 @@ const LINES: usize = 10;
 const PANEL: (f64, f64) = (640.0, 250.0);
 const MARGIN: (f64, f64, f64, f64) = (70.0, 190.0, 34.0, 30.0);
 const COLUMNS: usize = 2;
+/// Height of a line of the list of events, px.
+const EVENT_HEIGHT: f64 = 18.0;
 /// Colours that stay apart for most eyes (Okabe and Ito 2008), then lighter ones.
 const COLOURS: [&str; LINES] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#5f5f5f", "#8c564b", "#bcbd22", "#9467bd"];
@@ -25,8 +27,9 @@ const COLOURS: [&str; LINES] =
 pub fn plot_svg(log: &Log) -> String {
     let chosen: Vec<Axes> =
         log.signals.axes().into_iter().filter(|axes| PANELS.contains(&axes.plot) && is_telling(log, axes)).collect();
-    let rows = chosen.len().div_ceil(COLUMNS).max(1);
-    let (width, height) = (PANEL.0 * COLUMNS as f64, PANEL.1 * rows as f64 + 40.0);
+    let rows = chosen.len().div_ceil(COLUMNS);
+    let below = 40.0 + PANEL.1 * rows as f64;
+    let (width, height) = (PANEL.0 * COLUMNS as f64, below + EVENT_HEIGHT * (log.events.len() as f64 + 2.0));
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
          font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n\
@@ -40,6 +43,7 @@ pub fn plot_svg(log: &Log) -> String {
         add_panel(&mut svg, log, axes);
         svg.push_str("</g>\n");
     }
+    add_event_list(&mut svg, log, below);
     svg.push_str("</svg>\n");
     svg
 }
@@ -65,8 +69,11 @@ fn add_panel(svg: &mut String, log: &Log, axes: &Axes) {
         let x = across.at(event.t);
         let _ = writeln!(
             svg,
-            "<line x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{:.1}\" y2=\"{:.1}\" stroke=\"#999\" stroke-dasharray=\"2 3\"/>",
-            bottom_top.0, bottom_top.1
+            "<line x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{:.1}\" y2=\"{:.1}\" stroke=\"#999\" stroke-dasharray=\"2 3\">\
+             <title>{}</title></line>",
+            bottom_top.0,
+            bottom_top.1,
+            escape(&event.text)
         );
     }
     for (k, &i) in drawn.iter().enumerate() {
@@ -77,6 +84,21 @@ fn add_panel(svg: &mut String, log: &Log, axes: &Axes) {
         let more = format!("and {} more", axes.channels.len() - LINES);
         let y = MARGIN.2 + 12.0 + 17.0 * LINES as f64;
         let _ = writeln!(svg, "<text x=\"{}\" y=\"{y}\" fill=\"#666\">{more}</text>", PANEL.0 - MARGIN.1 + 12.0);
+    }
+}
+
+/// What happened when, below the panels.
+fn add_event_list(svg: &mut String, log: &Log, top: f64) {
+    for (row, event) in log.events.iter().enumerate() {
+        let y = top + EVENT_HEIGHT * (row as f64 + 1.0);
+        let _ = writeln!(
+            svg,
+            "<text x=\"{}\" y=\"{y}\" text-anchor=\"end\" fill=\"#444\">{:.3} s</text><text x=\"{}\" y=\"{y}\">{}</text>",
+            MARGIN.0 + 10.0,
+            event.t,
+            MARGIN.0 + 22.0,
+            escape(&event.text)
+        );
     }
 }
 

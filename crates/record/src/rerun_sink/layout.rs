@@ -27,6 +27,8 @@ use spatial::Vec3;
 const FRONT_PLOTS: usize = 4;
 /// Legends with more lines than this hide the plot.
 const LEGEND_LINES: usize = 8;
+/// Ground of the 3-D views, RGB.
+const NIGHT: [u8; 3] = [13, 16, 24];
 /// From where the scene is looked at, W axes.
 const EYE_DIRECTION: [f64; 3] = [0.55, -1.0, 0.5];
 
@@ -98,7 +100,7 @@ fn close_up(scene: &Scene, link: usize, look: &Look) -> Node {
     with_space_properties(view, eye, target).into()
 }
 
-/// Stars instead of a floor: no grid, dark ground.
+/// Space has no floor: no grid, dark ground.
 fn with_space_properties(view: View, eye: Vec3, target: Vec3) -> View {
     let eye = bp::EyeControls3D::new()
         .with_kind(Eye3DKind::Orbital)
@@ -107,7 +109,7 @@ fn with_space_properties(view: View, eye: Vec3, target: Vec3) -> View {
         .with_eye_up([0.0, 0.0, 1.0]);
     view.with("EyeControls3D", &eye)
         .with("LineGrid3D", &bp::LineGrid3D::new().with_visible(false))
-        .with("Background", &bp::Background::new(BackgroundKind::GradientDark))
+        .with("Background", &bp::Background::new(BackgroundKind::SolidColor).with_color(NIGHT))
 }
 
 /// Time, severity and text, without the columns that say the same in every row.

@@ -6,7 +6,7 @@
 //! | `/world/fixtures/…`, `/world/trails/…` | what stands still; paths of points, static |
 //! | `/world/contacts/points` | contact points: teal sticks, orange slides |
 //! | `/world/contacts/normal`, `friction` | forces on body B as arrows; friction has the colour of its point |
-//! | `/signals/<plot>/<unit>/<channel>` | one scalar per channel, `f64` |
+//! | `/signals/<plot>/<unit>/<channel>` | one scalar per channel, `f64`; small ones in a unit such as `1e-15` |
 //! | `/events`, `/phase`, `/summary` | text log, phase lane, markdown |
 //!
 //! Timelines: `sim_time` (duration since the start of the simulated time) and `step`; there is no wall clock in a
@@ -23,6 +23,7 @@ mod look;
 mod paths;
 mod rows;
 mod shapes;
+mod units;
 
 pub use live::{DEFAULT_VIEWER, LiveRerun};
 pub use look::Look;
@@ -46,6 +47,7 @@ pub fn write_rrd(path: &Path, log: &Log, scene: &Scene, summary: &str) -> Result
 /// run, since Rerun numbers its chunks by the clock.
 pub fn encode_rrd(log: &Log, scene: &Scene, summary: &str) -> Result<Vec<u8>, RecordError> {
     let encode = || -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+        let log = &*units::readable(log);
         let (rec, storage) = builder(&log.meta.run_id()).memory()?;
         let look = Look::of_run(log, scene);
         // First, so that a viewer lays out its views before the data come.
