@@ -147,7 +147,11 @@ impl Bristle {
             if sticks { (trial.s_trial, 1.0) } else { (trial.s_trial * (s_max / length), s_max / length) };
         let mut direction = if sticks { Vector3::zeros() } else { trial.s_trial / length };
         let mut tangent = (self.stiffness + self.damping / trial.elapsed) * shrink;
-        let mut force = -(self.stiffness * s + self.damping / trial.elapsed * (s - trial.s));
+        // The damper sees what was left within the bound of now: the length that a falling bound takes away slips at the
+        // tip. Counted as a rate of the bristle, it would push along the slip and give energy.
+        let length_before = trial.s.norm();
+        let before = if length_before > s_max { trial.s * (s_max / length_before) } else { trial.s };
+        let mut force = -(self.stiffness * s + self.damping / trial.elapsed * (s - before));
         let size = force.norm();
         if size > bound && self.damping > 0.0 {
             direction = force / size;

@@ -81,10 +81,7 @@ impl Inertia {
     /// Momentum of the twist about the same point: angular (moment slot) and linear (force slot).
     #[inline]
     pub fn momentum(&self, v: &Twist) -> Wrench {
-        Wrench {
-            moment: self.rot * v.ang + self.mc.cross(&v.lin),
-            force: self.mass * v.lin + v.ang.cross(&self.mc),
-        }
+        Wrench { moment: self.rot * v.ang + self.mc.cross(&v.lin), force: self.mass * v.lin + v.ang.cross(&self.mc) }
     }
 
     /// Kinetic energy of the twist, J.

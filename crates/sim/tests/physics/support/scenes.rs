@@ -72,6 +72,11 @@ pub(crate) fn pad_gripper(setup: &Setup) -> World {
 
 /// Bodies of every shape that fly into a big free box, each tilted and turning.
 pub(crate) fn shower(setup: &Setup) -> World {
+    shower_of(setup, usize::MAX)
+}
+
+/// The same, where only the first `touching` of ball, box, cylinder, capsule, hull and mesh touch the big box.
+pub(crate) fn shower_of(setup: &Setup, touching: usize) -> World {
     let corner =
         |k: u32| Vec3::new(f64::from(k & 1) - 0.5, f64::from(k >> 1 & 1) - 0.5, f64::from(k >> 2) - 0.5) * 0.12;
     let hull: Vec<Vec3> = (0..7).map(corner).collect();
@@ -94,6 +99,7 @@ pub(crate) fn shower(setup: &Setup) -> World {
         spec.shapes.push(shape(&format!("shape{i}"), Some(i + 1), geometry));
         spec.pairs.push(([0, i + 1], law));
     }
+    spec.pairs.truncate(touching);
     let mut world = world(spec);
     let mut twists = vec![twist([0.02, -0.01, 0.03], [0.0; 3])];
     for i in 1..7 {
