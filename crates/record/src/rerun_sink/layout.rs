@@ -88,13 +88,14 @@ fn overview(look: &Look) -> Node {
     with_space_properties(view, eye, look.centre).into()
 }
 
-/// The camera stands still beside the link that it moves with, and looks at the first contact.
+/// The camera moves with the link; it looks at the first contact from the side where the other vehicle comes from,
+/// and at the whole link where no contact is known.
 fn close_up(scene: &Scene, link: usize, look: &Look) -> Node {
     let target = look.touch_l.unwrap_or_default();
-    let outwards = target.try_normalize(0.05).unwrap_or(Vec3::x());
-    let sideways = outwards.cross(&Vec3::z()).try_normalize(0.05).unwrap_or(Vec3::y());
-    let distance = (0.25 * look.radius).clamp(0.4, 2.0);
-    let eye = target + (0.6 * outwards + 0.7 * sideways + 0.4 * Vec3::z()).normalize() * distance;
+    let sideways = look.approach_l.cross(&Vec3::z()).try_normalize(0.05).unwrap_or(Vec3::y());
+    let near = if look.touch_l.is_some() { 0.25 } else { 0.6 };
+    let distance = (near * look.radius).clamp(0.4, 8.0 * near);
+    let eye = target + (0.6 * look.approach_l + 0.7 * sideways + 0.4 * Vec3::z()).normalize() * distance;
     let view =
         View::new("3D", "Close-up", link_path(scene, link)).with_contents(&["+ /world/**", "- /world/trails/**"]);
     with_space_properties(view, eye, target).into()

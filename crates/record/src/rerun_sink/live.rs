@@ -80,7 +80,9 @@ impl LiveRerun {
     /// Sends what is left and the summary (markdown), and waits until the viewer has it.
     pub fn finish(mut self, summary: &str) -> Result<(), RecordError> {
         self.send()?;
-        rows::send_summary(&self.rec, summary).map_err(lost)?;
+        if let Some(look) = &self.look {
+            rows::send_summary(&self.rec, summary, look).map_err(lost)?;
+        }
         self.rec.flush_with_timeout(PATIENCE).map_err(lost)
     }
 

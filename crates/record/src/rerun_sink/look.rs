@@ -6,9 +6,9 @@ use spatial::{Pose, Vec3};
 /// Positions further from W's origin than this would lose tenths of millimetres in single precision.
 const FAR_M: f64 = 1.0e3;
 /// Arrow of the largest force, as a share of the scene's radius.
-const ARROW_SHARE: f64 = 0.12;
+const ARROW_SHARE: f64 = 0.06;
 /// Bounds of the arrow of the largest force, m.
-const ARROW_RANGE_M: [f64; 2] = [0.05, 0.5];
+const ARROW_RANGE_M: [f64; 2] = [0.03, 0.3];
 
 /// Choices that make a scene readable, taken from the scene and the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,14 +23,23 @@ pub struct Look {
     pub radius: f64,
     /// Centre of the first contacts in the close-up link's frame, m.
     pub touch_l: Option<Vec3>,
+    /// From the close-up link to the other vehicles, in its frame at the first contact or at the start, unit length.
+    pub approach_l: Vec3,
 }
 
 impl Look {
     /// For a finished run: the longest arrow belongs to the largest force of the run.
     pub fn of_run(log: &Log, scene: &Scene) -> Self {
         let start = if log.is_empty() { &[] } else { log.poses_w(0) };
-        let peak = log.peak_contact_force();
-        Self { touch_l: first_touch(log, scene), ..Self::at(start, scene, peak) }
+        let look = Self::at(start, scene, log.peak_contact_force());
+        match (0..log.len()).find(|&i| !log.contacts[i].is_empty()).zip(scene.close_up) {
+            Some((touch, link)) => Self {
+                touch_l: Some(mean_contact(log, touch, link)),
+                approach_l: approach(log.poses_w(touch), scene),
+                ..look
+            },
+            None => look,
+        }
     }
 
     /// From the poses at the start and the largest force that is expected, N.
@@ -41,7 +50,14 @@ impl Look {
         let radius = (0.5 * (high - low).norm()).max(0.1);
         let longest = (ARROW_SHARE * radius).clamp(ARROW_RANGE_M[0], ARROW_RANGE_M[1]);
         let arrow_m_per_n = longest / peak_force.max(1e-3);
-        Self { origin_w, arrow_m_per_n, centre: 0.5 * (low + high) - origin_w, radius, touch_l: None }
+        let approach_l = approach(poses_w, scene);
+        Self { origin_w, arrow_m_per_n, centre: 0.5 * (low + high) - origin_w, radius, touch_l: None, approach_l }
+    }
+
+    /// What the colours and lengths mean, as a line of markdown.
+    pub(super) fn legend(&self) -> String {
+        let scale = 0.1 / self.arrow_m_per_n;
+        format!("*Contact points: teal sticks, orange slides. Force arrows: 0.1 m is {scale:.2} N; normal blue.*")
     }
 
     /// A pose as it is logged.
@@ -73,10 +89,18 @@ fn bounds(poses_w: &[Pose], scene: &Scene) -> (Vec3, Vec3) {
     points.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
-fn first_touch(log: &Log, scene: &Scene) -> Option<Vec3> {
-    let link = scene.close_up?;
-    let touch = (0..log.len()).find(|&i| !log.contacts[i].is_empty())?;
-    let points = &log.contacts[touch];
+/// Centre of the contacts at an instant, in a link's frame.
+fn mean_contact(log: &Log, instant: usize, link: usize) -> Vec3 {
+    let points = &log.contacts[instant];
     let mean_w = points.iter().map(|c| c.point_w).sum::<Vec3>() / points.len() as f64;
-    Some(log.poses_w(touch)[link].inverse_transform_point(&mean_w.into()).coords)
+    log.poses_w(instant)[link].inverse_transform_point(&mean_w.into()).coords
+}
+
+/// Direction from the close-up link to the links of the other vehicles, in its frame.
+fn approach(poses_w: &[Pose], scene: &Scene) -> Vec3 {
+    let owner = scene.close_up.and_then(|link| scene.links().nth(link)).map(|(vehicle, _)| vehicle);
+    let Some(pose_wl) = scene.close_up.and_then(|link| poses_w.get(link)) else { return Vec3::x() };
+    let others = scene.links().zip(poses_w).filter(|((vehicle, _), _)| Some(*vehicle) != owner);
+    let sum: Vec3 = others.map(|(_, pose)| pose.translation.vector - pose_wl.translation.vector).sum();
+    (pose_wl.rotation.inverse() * sum).try_normalize(1e-6).unwrap_or(Vec3::x())
 }

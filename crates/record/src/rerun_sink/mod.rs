@@ -54,7 +54,7 @@ pub fn encode_rrd(log: &Log, scene: &Scene, summary: &str) -> Result<Vec<u8>, Re
         layout::send_blueprint(&rec, log, scene, &look)?;
         send_static(&rec, log, scene, &look)?;
         shapes::send_trails(&rec, log, scene, &look)?;
-        rows::send_summary(&rec, summary)?;
+        rows::send_summary(&rec, summary, &look)?;
         rows::send_rows(&rec, log, scene, &look)?;
         Ok(storage.drain_as_bytes()?)
     };

@@ -52,9 +52,10 @@ pub(super) fn send_styles(rec: &RecordingStream, log: &Log) -> Sent {
     Ok(())
 }
 
-/// The summary for people.
-pub(super) fn send_summary(rec: &RecordingStream, markdown: &str) -> Sent {
-    let document = rerun::TextDocument::new(markdown).with_media_type(rerun::MediaType::MARKDOWN);
+/// The summary for people, and what the colours mean.
+pub(super) fn send_summary(rec: &RecordingStream, markdown: &str, look: &Look) -> Sent {
+    let text = format!("{}\n\n{}\n", markdown.trim_end(), look.legend());
+    let document = rerun::TextDocument::new(text).with_media_type(rerun::MediaType::MARKDOWN);
     rec.log_static("summary", &document)
 }
 
