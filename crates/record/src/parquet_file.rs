@@ -29,7 +29,7 @@ pub fn write_parquet(path: &Path, meta: &Meta, signals: &Signals) -> Result<(), 
 /// The bytes of a Parquet file.
 pub fn encode_parquet(meta: &Meta, signals: &Signals) -> Result<Vec<u8>, RecordError> {
     let encode = || -> Result<Vec<u8>, parquet::errors::ParquetError> {
-        let batch = build_batch(signals)?;
+        let batch = build_batch(meta, signals)?;
         let mut bytes = Vec::new();
         let mut writer = ArrowWriter::try_new(&mut bytes, batch.schema(), Some(properties(meta)))?;
         writer.write(&batch)?;
@@ -59,7 +59,8 @@ pub fn read_parquet(path: &Path) -> Result<(Meta, Signals), RecordError> {
     Ok((meta_from(&header), signals))
 }
 
-fn build_batch(signals: &Signals) -> Result<RecordBatch, arrow::error::ArrowError> {
+/// The run's header stands in the Arrow schema too, where pyarrow and polars look for it.
+fn build_batch(meta: &Meta, signals: &Signals) -> Result<RecordBatch, arrow::error::ArrowError> {
     let mut fields = vec![time_field()];
     let mut columns: Vec<ArrayRef> = vec![Arc::new(Float64Array::from(signals.times.clone()))];
     for channel in &signals.channels {
@@ -67,7 +68,8 @@ fn build_batch(signals: &Signals) -> Result<RecordBatch, arrow::error::ArrowErro
         let sampled = channel.values.iter().map(|value| (!value.is_nan()).then_some(*value));
         columns.push(Arc::new(Float64Array::from_iter(sampled)));
     }
-    RecordBatch::try_new(Arc::new(Schema::new(fields)), columns)
+    let header = header_of(meta).into_iter().map(|pair| (pair.key, pair.value.unwrap_or_default()));
+    RecordBatch::try_new(Arc::new(Schema::new_with_metadata(fields, header.collect())), columns)
 }
 
 fn time_field() -> Field {
