@@ -1,34 +1,6 @@
 //! Globs over names: `*` stands for any run of characters (also none, also with `/`), `?` for exactly one.
 
-/// Whether `text` matches `pattern`.
-///
-/// Linear in practice and never worse than the product of the lengths: on a mismatch only the last `*` is retried.
-pub fn glob_matches(pattern: &str, text: &str) -> bool {
-    let (pattern, text) = (pattern.as_bytes(), text.as_bytes());
-    let (mut p, mut t) = (0, 0);
-    let mut retry = None;
-    while t < text.len() {
-        match pattern.get(p) {
-            Some(b'*') => {
-                retry = Some((p, t));
-                p += 1;
-            }
-            Some(c) if *c == b'?' || *c == text[t] => {
-                p += 1;
-                t += 1;
-            }
-            _ => match retry {
-                Some((star, from)) => {
-                    retry = Some((star, from + 1));
-                    p = star + 1;
-                    t = from + 1;
-                }
-                None => return false,
-            },
-        }
-    }
-    pattern[p..].iter().all(|c| *c == b'*')
-}
+pub use contact::glob_matches;
 
 /// Whether a text is a pattern rather than a name.
 pub fn is_glob(text: &str) -> bool {
