@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 use softdock::scenario::Mission;
 use softdock::scenario::outcome::{Outcome, Verdict};
+use softdock::sim::Integrator;
 
 /// Wall-clock figures of a run; no part of its result.
 #[derive(Clone, Copy, Debug)]
@@ -80,6 +81,12 @@ pub(crate) fn print(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict], 
     );
     if work.unconverged_steps > 0 {
         println!("  {} steps ended before the contact laws were met to tolerance", work.unconverged_steps);
+    }
+    let model = mission.world.model();
+    if model.integrator == Integrator::RungeKutta4 && model.laws.iter().any(|law| law.friction.is_some()) {
+        println!(
+            "  rk4 resolves a sliding bristle only where the step is below 2 μ f_n / (k |u|); see that a finer one agrees"
+        );
     }
     for verdict in verdicts {
         println!("  {} {}", if verdict.met { "as expected:" } else { "NOT AS EXPECTED:" }, verdict.text);

@@ -21,6 +21,7 @@ pub struct Detector {
     order: Vec<u32>,
     candidates: Vec<u32>,
     raw: Vec<Raw>,
+    nearest: Vec<f64>,
     primitives: PrimitiveBuffer,
     manifolds: ManifoldBuffer,
     narrow: u64,
@@ -51,6 +52,7 @@ impl Detector {
             order: (0..n as u32).collect(),
             candidates: Vec::with_capacity(scene.pairs().len()),
             raw: Vec::with_capacity(64),
+            nearest: Vec::new(),
             primitives: PrimitiveBuffer::default(),
             manifolds: ManifoldBuffer::default(),
             narrow: 0,
@@ -77,7 +79,7 @@ impl Detector {
             let margin = reach[body_a] + reach[body_b] + SKIN;
             self.narrow += 1;
             self.find(&scene.parts[a], &poses[body_a], &scene.parts[b], &poses[body_b], margin);
-            reduce(&mut self.raw);
+            reduce(&mut self.raw, &mut self.nearest);
             self.raw.sort_unstable_by_key(|p| p.feature);
             out.extend(self.raw.iter().map(|p| ContactPoint {
                 pair,
