@@ -101,7 +101,12 @@ fn conclude(
     }
     let place = run.folder.finish(&document)?;
     if !arguments.quiet {
-        println!("\n  The recording is in {}; see it with: rerun {0}/run.rrd", place.display());
+        let viewer = if place.join("run.rrd").exists() {
+            format!("; see it with: rerun {}/run.rrd", place.display())
+        } else {
+            String::new()
+        };
+        println!("\n  The results are in {}{viewer}", place.display());
     }
     if ended.is_err() {
         return Ok(Status::Diverged);
@@ -180,12 +185,9 @@ pub(crate) fn recorder_plan(mission: &Mission, scene: &Scene) -> RecorderPlan {
 fn probes(mission: &Mission) -> Vec<Probe> {
     let Strategy::TrackAndGrasp(spec) = &mission.scenario.strategy else { return Vec::new() };
     let model = mission.world.model();
-    let frame = |name: &str| {
-        let (vehicle, link) = name.split_once('/')?;
-        let v = model.vehicle(vehicle)?;
-        Some((v, model.vehicles[v].tree.link(link)?))
+    let (Some(tool), Some(grapple)) = (model.link(&spec.tool_frame), model.link(&spec.grapple_frame)) else {
+        return Vec::new();
     };
-    let (Some(tool), Some(grapple)) = (frame(&spec.tool_frame), frame(&spec.grapple_frame)) else { return Vec::new() };
     let probe = |name: &str, unit: &str, text: &str, read: fn(&World, Ends) -> f64| Probe {
         spec: ChannelSpec::new(name, unit, Plot::Relative).described(text),
         read: Box::new(move |world| read(world, (tool, grapple))),

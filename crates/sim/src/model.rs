@@ -226,6 +226,13 @@ impl Model {
         self.vehicles.iter().position(|v| v.name == name)
     }
 
+    /// Vehicle and link of `vehicle/link`.
+    pub fn link(&self, name: &str) -> Option<(usize, usize)> {
+        let (vehicle, link) = name.split_once('/')?;
+        let v = self.vehicle(vehicle)?;
+        Some((v, self.vehicles[v].tree.link(link)?))
+    }
+
     /// Name of a pair, `vehicle/shape · vehicle/shape`.
     pub fn pair_name(&self, pair: usize) -> String {
         let [a, b] = self.scene.pairs()[pair];

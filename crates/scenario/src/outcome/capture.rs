@@ -34,12 +34,7 @@ pub(super) struct CaptureWatch {
 
 impl CaptureWatch {
     pub(super) fn new(spec: &TrackAndGrasp, model: &Model) -> Option<Self> {
-        let frame = |name: &str| {
-            let (vehicle, link) = name.split_once('/')?;
-            let v = model.vehicle(vehicle)?;
-            Some((v, model.vehicles[v].tree.link(link)?))
-        };
-        let ((servicer, tool), (target, grapple)) = (frame(&spec.tool_frame)?, frame(&spec.grapple_frame)?);
+        let ((servicer, tool), (target, grapple)) = (model.link(&spec.tool_frame)?, model.link(&spec.grapple_frame)?);
         Some(Self {
             servicer,
             target,
