@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The one total order.
-const ORDER: [&str; 7] = ["spatial", "friction", "contact", "multibody", "sim", "record", "scenario"];
+const ORDER: [&str; 8] = ["spatial", "friction", "contact", "multibody", "sim", "record", "lab", "scenario"];
 
 /// The wall.
 const LONGEST_FILE: usize = 600;

@@ -1,0 +1,131 @@
+//! What an experiment is and what it answers.
+
+use serde::Serialize;
+
+/// A named experiment.
+#[derive(Clone, Copy, Debug)]
+pub struct Experiment {
+    /// Name on the command line, in words with dashes.
+    pub name: &'static str,
+    /// The question that it answers, one line.
+    pub question: &'static str,
+    /// Runs it.
+    pub run: fn(&Options) -> Result<Outcome, LabError>,
+}
+
+/// How an experiment runs.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Step of the integrator, s; the experiment's own where absent.
+    pub step: Option<f64>,
+    /// Shorter runs and coarser grids, for a first look; figures that need the whole run are left out.
+    pub quick: bool,
+}
+
+/// What an experiment found.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// Figures in the order of the report.
+    pub figures: Vec<Figure>,
+    /// Charts, drawn one below the other.
+    pub charts: Vec<Chart>,
+    /// One run to look at: its log and what its scene looks like.
+    pub run: Option<(record::Log, record::Scene)>,
+    /// What a reader should know besides: limits, sources, what was left out.
+    pub notes: Vec<String>,
+}
+
+/// A measured figure beside what it should be.
+#[derive(Clone, Debug, Serialize)]
+pub struct Figure {
+    /// What it is, with its condition: "creep at 50 % of the limit, 1 h".
+    pub name: String,
+    /// Measured, in `unit`.
+    pub measured: f64,
+    /// What theory says, in `unit`; NaN where there is none.
+    pub expected: f64,
+    /// Unit, "1" for none.
+    pub unit: &'static str,
+    /// How far it may be off.
+    pub allowed: Allowed,
+}
+
+/// How far a figure may be from what it should be.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Allowed {
+    /// |measured − expected| ≤ x |expected|.
+    Relative(f64),
+    /// |measured − expected| ≤ x.
+    Absolute(f64),
+    /// |measured| ≤ x.
+    AtMost(f64),
+    /// |measured| ≥ x.
+    AtLeast(f64),
+    /// Printed for the reader; nothing to hold.
+    Shown,
+}
+
+impl Figure {
+    /// Whether the figure is what it should be; NaN never is, unless it is only shown.
+    pub fn holds(&self) -> bool {
+        let off = (self.measured - self.expected).abs();
+        match self.allowed {
+            Allowed::Relative(x) => off <= x * self.expected.abs(),
+            Allowed::Absolute(x) => off <= x,
+            Allowed::AtMost(x) => self.measured.abs() <= x,
+            Allowed::AtLeast(x) => self.measured.abs() >= x,
+            Allowed::Shown => true,
+        }
+    }
+}
+
+/// Curves over one pair of axes.
+#[derive(Clone, Debug, Default)]
+pub struct Chart {
+    /// What it shows.
+    pub title: String,
+    /// Quantity and unit across: "time, s".
+    pub across: String,
+    /// Quantity and unit up.
+    pub up: String,
+    /// Whether the axes (across, up) are logarithmic.
+    pub logarithmic: (bool, bool),
+    /// The curves.
+    pub curves: Vec<Curve>,
+}
+
+/// One curve of a chart.
+#[derive(Clone, Debug, Default)]
+pub struct Curve {
+    /// Name in the legend.
+    pub name: String,
+    /// Points (across, up); NaN breaks the line.
+    pub points: Vec<(f64, f64)>,
+    /// Drawn as theory (dashed) rather than as a measurement.
+    pub is_theory: bool,
+}
+
+/// Why an experiment could not be run.
+#[derive(Debug, thiserror::Error)]
+pub enum LabError {
+    /// The model is unsound.
+    #[error("experiment {experiment}: {source}")]
+    Model {
+        /// Which one.
+        experiment: &'static str,
+        /// What is wrong with it.
+        source: sim::ModelError,
+    },
+    /// The run diverged.
+    #[error("experiment {experiment}: {source}")]
+    Step {
+        /// Which one.
+        experiment: &'static str,
+        /// Where.
+        source: sim::StepError,
+    },
+    /// The recording failed.
+    #[error(transparent)]
+    Record(#[from] record::RecordError),
+}
