@@ -192,5 +192,5 @@ fn pair_law(law: &ContactLaw) -> PairLaw {
             viscous: b.viscous_n_s_per_m,
         }),
     };
-    PairLaw { normal: Normal::new(normal), friction }
+    PairLaw::new(Normal::new(normal), friction)
 }
