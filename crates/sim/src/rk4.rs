@@ -8,6 +8,7 @@
 
 use crate::actuator::CoordinatePoint;
 use crate::contacts::{find_memory, find_touches};
+use crate::mechanism;
 use crate::model::Model;
 use crate::solve;
 use crate::state::{Account, ContactMemory, State};
@@ -103,6 +104,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     ws.rk = rk;
     ws.update_positions(model, state);
     finish(model, state, ws);
+    mechanism::commit(model, state, ws);
 }
 
 /// Every touching point gets a slot, in the order of touches; its deflection is cut to what the normal force holds.
@@ -152,6 +154,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     let slots = rk.slots.len();
     rk.rate.reset(model, slots);
     eval_contacts(model, ws, rk);
+    mechanism::eval_explicit(model, state, ws);
     eval_coordinates(model, state, ws, rk);
     calc_external(model, state, ws);
     calc_bias(model, state, ws, false);
