@@ -44,8 +44,8 @@ pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
 pub use environment::Environment;
 pub use error::{ModelError, StepError};
 pub use mechanism::{
-    Anchor, Bushing, Capture, Latch, Mechanism, MechanismKind, MechanismMemory, MechanismReport, MechanismStatus, Overload,
-    PullIn, Side, Strength, Strut, StrutSides, Weld,
+    Anchor, Bushing, Capture, Latch, Mechanism, MechanismKind, MechanismMemory, MechanismReport, MechanismStatus,
+    Overload, PullIn, Side, Strength, Strut, StrutSides, Weld,
 };
 pub use model::{Base, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, Vehicle, VehicleSpec};
 pub use run::{Controller, Flow, NoControl, Observer};

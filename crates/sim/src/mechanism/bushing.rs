@@ -118,8 +118,7 @@ pub(crate) fn calc_deformation(sides: &[Side; 2], rest: &RestPose) -> Deformatio
     let (offset, point) = (b.pos - a.pos, 0.5 * (a.pos + b.pos));
     let (turn_rows, t) = (mean * blend(half.cosecant), mean * (half.tangent * phi));
     let p = mean.tr_mul(&offset);
-    let mut out =
-        Deformation { point, n: 6, e: [phi.x, phi.y, phi.z, p.x, p.y, p.z], ..Deformation::default() };
+    let mut out = Deformation { point, n: 6, e: [phi.x, phi.y, phi.z, p.x, p.y, p.z], ..Deformation::default() };
     for i in 0..3 {
         let axis = mean.column(i).into_owned();
         out.rows[i] = Wrench::new(turn_rows.column(i).into_owned(), Vec3::zeros());

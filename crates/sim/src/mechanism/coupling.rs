@@ -5,8 +5,9 @@
 //!   e' = e_base + β ė',   rate = (1 − θ) ė + θ ė'        (β, θ and e_base: table in `contacts`)
 //!   line: f(dV) = f₀ − (β k + θ c) b·dV
 //!
-//! Gains dV are spatial, those of the velocity field at a place fixed in W; `carried` is h (ω_b × v_b − ω_a × v_a) at the
-//! two origins, by which the material points' gains differ, so that a drifting world looks the same.
+//! Gains dV are spatial, those of the velocity field at a place fixed in W; `carried` is h (ω_b × v_b − ω_a × v_a), by which
+//! the material points' gains differ, so that a drifting world looks the same: with ω and v of the two origins for the
+//! end of the step; with those of the vehicles' bases at mid-step, where the lever arms have turned already.
 
 use super::{Deformation, MAX_ROWS, Moment, RowForce, Rows, Side};
 use crate::actuator::ActuatorKind;
@@ -83,7 +84,6 @@ pub(crate) fn find_couplings(model: &Model, state: &State, ws: &mut Workspace) {
         };
         let speed = coupling.calc_relative(|body| vel_of(model, ws, body));
         coupling.rate.iter_mut().zip(speed).for_each(|(rate, s)| *rate += s);
-        coupling.carried = coupling.calc_carried(model, ws);
         ws.couplings.push(coupling);
     }
 }
@@ -114,11 +114,13 @@ impl Coupling {
         self.calc_relative(|body| ws.dvel[body])
     }
 
-    fn calc_carried(&self, model: &Model, ws: &Workspace) -> Rows {
+    fn calc_carried(&self, model: &Model, ws: &Workspace, at_end: bool) -> Rows {
         let [a, b] = [0, 1].map(|k| {
             let Some(&(vehicle, local)) = model.owners.get(self.bodies[k]) else { return Vec3::zeros() };
             let kin = &ws.kin[vehicle];
-            kin.vel[local].ang.cross(&kin.vel[local].at(&(self.origins[k] - kin.anchor)))
+            let (twist, arm) =
+                if at_end { (kin.vel[local], self.origins[k] - kin.anchor) } else { (kin.vel[0], Vec3::zeros()) };
+            twist.ang.cross(&twist.at(&arm))
         });
         self.at.rows.map(|row| model.step * row.force.dot(&(b - a)))
     }
@@ -145,13 +147,15 @@ impl Coupling {
     fn holds(&self, gain: &Rows) -> bool {
         let groups: &[std::ops::Range<usize>] = if self.at.n == MAX_ROWS { &[0..3, 3..6] } else { &[0..1] };
         groups.iter().all(|group| {
-            let (mut miss, mut size) = (0.0_f64, 0.0_f64);
+            let (mut miss, mut size, mut rounding) = (0.0_f64, 0.0_f64, FORCE_FLOOR);
             for i in group.clone() {
-                let on_line = self.line[i] - self.slope[i] * gain[i];
-                miss = miss.max((self.law[i].force - on_line).abs());
-                size = size.max(self.law[i].force.abs());
+                let (law, on_line) = (&self.law[i], self.line[i] - self.slope[i] * gain[i]);
+                miss = miss.max((law.force - on_line).abs());
+                size = size.max(law.force.abs());
+                // A hard spring makes a force of the last bit of its length.
+                rounding += 8.0 * f64::EPSILON * law.stiffness * self.at.e[i].abs();
             }
-            miss <= LAW_TOLERANCE * size + FORCE_FLOOR
+            miss <= LAW_TOLERANCE * size + rounding
         })
     }
 
@@ -180,6 +184,7 @@ pub(crate) fn place(model: &Model, ws: &mut Workspace, scheme: Scheme) {
     let h = model.step;
     for k in 0..ws.couplings.len() {
         let mut coupling = ws.couplings[k];
+        coupling.carried = coupling.calc_carried(model, ws, scheme != Scheme::ImplicitMidpoint);
         coupling.eval(model, &[0.0; MAX_ROWS]);
         let resolved = scheme == Scheme::ImplicitMidpoint && !coupling.is_stiff(model, ws);
         (coupling.beta, coupling.theta) = match scheme {
@@ -210,7 +215,7 @@ pub(crate) fn eval_explicit(model: &Model, state: &State, ws: &mut Workspace) {
 /// Takes the velocities at mid-step, which `ws` holds, for what the motion carries.
 pub(crate) fn update_carried(model: &Model, ws: &mut Workspace) {
     for k in 0..ws.couplings.len() {
-        let carried = ws.couplings[k].calc_carried(model, ws);
+        let carried = ws.couplings[k].calc_carried(model, ws, false);
         let coupling = &mut ws.couplings[k];
         for i in 0..coupling.at.n {
             coupling.line[i] -= coupling.slope[i] * (carried[i] - coupling.carried[i]);

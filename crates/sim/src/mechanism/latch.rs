@@ -169,7 +169,9 @@ impl Latch {
         {
             return Some(format!("bounds {low} … {high} of its capture must ascend"));
         }
-        if self.pull_in.is_some_and(|p| p.speed.is_nan() || p.speed <= 0.0 || p.turn_rate.is_nan() || p.turn_rate <= 0.0)
+        if self
+            .pull_in
+            .is_some_and(|p| p.speed.is_nan() || p.speed <= 0.0 || p.turn_rate.is_nan() || p.turn_rate <= 0.0)
         {
             return Some("the speeds of its pull-in must be positive".to_owned());
         }

@@ -35,8 +35,8 @@ pub use strut::{Strut, StrutSides};
 pub use weld::Weld;
 
 pub(crate) use coupling::{
-    Coupling, add_impulses, add_stiffness, add_wrenches, calc_cross, calc_sides, commit, eval_explicit, find_couplings, laws_hold,
-    place, update_carried,
+    Coupling, add_impulses, add_stiffness, add_wrenches, calc_cross, calc_sides, commit, eval_explicit, find_couplings,
+    laws_hold, place, update_carried,
 };
 
 pub(crate) use latch::calc_offset;

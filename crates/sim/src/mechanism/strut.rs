@@ -98,7 +98,13 @@ impl Strut {
         let sign = match self.sides {
             StrutSides::Both => {
                 let stored = self.calc_spring_energy(elastic, stretch);
-                return RowForce { force: -elastic - c * rate, stiffness: k, damping: c, stored, loss: c * rate * rate };
+                return RowForce {
+                    force: -elastic - c * rate,
+                    stiffness: k,
+                    damping: c,
+                    stored,
+                    loss: c * rate * rate,
+                };
             }
             StrutSides::PullOnly => 1.0,
             StrutSides::PushOnly => -1.0,

@@ -1,8 +1,8 @@
 //! The energy account of mechanisms: closed for smooth laws by RK4, one-sided for every integrator; and determinism.
 
-use crate::support::mechanisms::{at, calc_books, calc_total, mechanism, place_ring, ring_spec, two_blocks};
+use crate::support::mechanisms::{at, calc_books, calc_total, mechanism, struck_ring, two_blocks};
 use crate::support::{ALL, Setup, run, twist, world};
-use sim::{Bushing, Energy, Integrator, MechanismKind, Strength, Strut, StrutSides, Weld, World};
+use sim::{Bushing, Energy, Integrator, MechanismKind, Strength, Strut, StrutSides, World};
 use spatial::{Pose, Rot, Vec3};
 
 /// A bushing with no equal springs, all damped.
@@ -43,20 +43,6 @@ fn bushing_far_from_rest_closes_its_energy_to_the_order_of_rk4() {
     }
 }
 
-/// A ring on six struts of every kind, pushed down off centre.
-fn pushed_ring(setup: &Setup, strut: Strut) -> World {
-    let mut spec = ring_spec(strut, setup);
-    let hold = Bushing::isotropic([2e3, 20.0], [60.0, 2.0]);
-    let weld = Weld { hold, strength: Strength::default() };
-    spec.mechanisms.push(mechanism("touch", at(1, 0.3, 0.1, 0.0), at(2, 0.0, 0.0, -0.3), MechanismKind::Weld(weld)));
-    let mut world = world(spec);
-    place_ring(&mut world);
-    world.rest_mechanism(6);
-    let still = twist([0.0; 3], [0.0; 3]);
-    world.set_base_twists(&[still, still, twist([0.05, 0.02, -0.1], [0.02, -0.05, -0.3])]);
-    world
-}
-
 /// Two-sided, within its stroke: smooth.
 fn smooth() -> Strut {
     Strut { rest_length: 0.35, stiffness: 600.0, damping: 60.0, preload: -15.0, ..Strut::default() }
@@ -64,7 +50,7 @@ fn smooth() -> Strut {
 
 #[test]
 fn six_struts_close_their_energy_with_rk4_at_a_small_step() {
-    let mut world = pushed_ring(&Setup::new(Integrator::RungeKutta4).step(1e-4), smooth());
+    let mut world = struck_ring(smooth(), &Setup::new(Integrator::RungeKutta4).step(1e-4));
     let start = calc_total(&world);
     run(&mut world, 10_000);
     let (off, account) = ((calc_total(&world) - start) / start, world.state().account);
@@ -78,7 +64,7 @@ fn stops_and_one_sided_struts_close_their_energy_to_their_kinks() {
     // Piecewise smooth: RK4 loses its order where a stop or the slack begins; 0.1 ms.
     for sides in [StrutSides::PushOnly, StrutSides::PullOnly] {
         let strut = Strut { sides, stroke: [0.33, 0.37], stop_stiffness: 1e4, stop_dissipation: 0.5, ..smooth() };
-        let mut world = pushed_ring(&Setup::new(Integrator::RungeKutta4).step(1e-4), strut);
+        let mut world = struck_ring(strut, &Setup::new(Integrator::RungeKutta4).step(1e-4));
         let start = calc_total(&world);
         run(&mut world, 10_000);
         let off = (calc_total(&world) - start) / start;
@@ -90,7 +76,7 @@ fn stops_and_one_sided_struts_close_their_energy_to_their_kinks() {
 #[test]
 fn works_explain_kinetic_energy_and_an_implicit_step_only_takes() {
     for integrator in ALL {
-        let mut world = pushed_ring(&Setup::new(integrator), smooth());
+        let mut world = struck_ring(smooth(), &Setup::new(integrator));
         let (books, total) = (calc_books(&world), calc_total(&world));
         run(&mut world, 2_000);
         let off = calc_books(&world) - books;
@@ -127,7 +113,7 @@ fn hard_bushing_with_implicit_euler_never_gains_energy() {
 fn run_with_mechanisms_repeats_its_bits_and_allocates_nothing() {
     let strut = Strut { stroke: [0.33, 0.37], stop_stiffness: 1e4, stop_dissipation: 0.5, ..smooth() };
     for integrator in ALL {
-        let [mut one, mut other] = [0, 1].map(|_| pushed_ring(&Setup::new(integrator), strut));
+        let [mut one, mut other] = [0, 1].map(|_| struck_ring(strut, &Setup::new(integrator)));
         run(&mut one, 300);
         run(&mut other, 300);
         assert_eq!(one.state(), other.state(), "{integrator:?}");
@@ -158,7 +144,8 @@ fn idle_latch_far_away_changes_no_bit() {
             overload: sim::Overload::LetsGo,
             pull_in: None,
         };
-        spec.mechanisms = vec![mechanism("hook", at(0, 5.0, 0.0, 0.0), at(1, 0.0, 0.0, 0.0), MechanismKind::Latch(latch))];
+        spec.mechanisms =
+            vec![mechanism("hook", at(0, 5.0, 0.0, 0.0), at(1, 0.0, 0.0, 0.0), MechanismKind::Latch(latch))];
         let mut with = world(spec);
         start_gripper(&mut with);
         run(&mut plain, 300);

@@ -3,8 +3,8 @@
 use crate::support::mechanisms::{HALF, at, ground, mechanism, tied_block, two_blocks};
 use crate::support::{ALL, Setup, block, run, spec, twist, world};
 use sim::{
-    Actuator, ActuatorKind, Base, Bushing, Command, Integrator, MechanismKind, MechanismStatus, ModelSpec, Strength, Weld,
-    World,
+    Actuator, ActuatorKind, Base, Bushing, Command, Integrator, MechanismKind, MechanismStatus, ModelSpec, Strength,
+    Weld, World,
 };
 use spatial::{Pose, Rot, Twist, Vec3};
 
@@ -57,13 +57,13 @@ fn damped_bushing_decays_as_its_ratio_says() {
         let body = block(2.0, Vec3::repeat(0.1));
         let setup = Setup::new(integrator).step(1e-4);
         let mut world = world(ModelSpec { mechanisms: vec![tie], ..spec(vec![(body, Base::Free)], &setup) });
-        world.set_base_twists(&[twist([0.0, 0.02, 0.0], [0.03, 0.0, 0.0])]);
+        world.set_base_twists(&[twist([0.02, 0.0, 0.0], [0.03, 0.0, 0.0])]);
         run(&mut world, 10_000);
         let rate = std::f64::consts::TAU * 2.0;
         let (decay, damped) = (0.1 * rate, rate * (1.0 - 0.01_f64).sqrt());
         let shape = (-decay).exp() * damped.sin() / damped;
         let e = world.mechanisms().next().unwrap().deformation;
-        let off = (e[1] - 0.02 * shape).abs().max((e[3] - 0.03 * shape).abs());
+        let off = (e[0] - 0.02 * shape).abs().max((e[3] - 0.03 * shape).abs());
         println!("{integrator:?}: {off:.1e}");
         // First order: ω² h t / 2 of the amplitude of 2 mm · e^−1.26.
         assert!(off < if integrator == Integrator::RungeKutta4 { 1e-11 } else { 1e-5 }, "{integrator:?}: {off:e}");
@@ -73,7 +73,8 @@ fn damped_bushing_decays_as_its_ratio_says() {
 /// A plate welded to the world at an offset, with a jet that pushes it along its own x axis.
 fn pushed(weld: Weld, integrator: Integrator) -> World {
     let place = Pose::from_parts(Vec3::new(0.4, 0.1, -0.2).into(), Rot::from_scaled_axis(Vec3::new(0.3, -0.8, 0.2)));
-    let tie = mechanism("weld", ground(Pose::identity()), at(0, 0.05, 0.0, 0.0), MechanismKind::Weld(weld));
+    let foot = ground(place * Pose::translation(0.05, 0.0, 0.0));
+    let tie = mechanism("weld", foot, at(0, 0.05, 0.0, 0.0), MechanismKind::Weld(weld));
     let kind =
         ActuatorKind::Thruster { body: 0, position: Vec3::new(0.05, 0.0, 0.0), direction: Vec3::x(), max_force: 1e3 };
     let mut spec = spec(vec![(block(2.0, Vec3::from(HALF)), Base::Free)], &Setup::new(integrator));
@@ -97,7 +98,8 @@ fn weld_deflects_by_force_over_stiffness_and_rests_where_it_was_made() {
         let mut world = pushed(Weld { hold, strength: Strength::default() }, integrator);
         let place = world.state().bases[0];
         run(&mut world, 100);
-        assert_eq!(world.mechanisms().next().unwrap().stored, 0.0, "{integrator:?}: a weld stores nothing at rest");
+        let stored = world.mechanisms().next().unwrap().stored;
+        assert!(stored < 1e-25, "{integrator:?}: a weld stores nothing at rest: {stored:e} J");
         push(&mut world, 30.0, 3_000);
         let moved = world.state().bases[0].translation.vector - place.translation.vector;
         let exact = place.rotation * Vec3::x() * (30.0 / 2e4);
@@ -143,31 +145,31 @@ fn weld_holds_below_its_strength_and_breaks_above() {
 }
 
 #[test]
-fn weld_within_one_vehicle_closes_a_loop() {
-    // Two equal pendulum bodies on one base, welded to each other: the loop holds, the base's momentum too.
+fn strut_within_one_vehicle_closes_a_loop() {
+    // Two arms on one base, their tips tied by a hard strut: a parallelogram, which swings as one.
     use crate::support::{joint, link, robot};
     use multibody::JointKind;
-    use sim::{Anchor, MomentumAudit};
+    use sim::{Anchor, MomentumAudit, Strut};
     for integrator in ALL {
         let arm = |name| link(name, 1.0, Vec3::new(0.0, 0.0, 0.2), Vec3::repeat(0.02));
         let base = link("base", 10.0, Vec3::zeros(), Vec3::repeat(0.5));
         let turn = |name, x| joint(name, 0, Vec3::new(x, 0.0, 0.1), Vec3::y(), JointKind::Revolute);
         let tree = robot(vec![base, arm("left"), arm("right")], vec![turn("l", -0.2), turn("r", 0.2)]);
-        let tip = |link, x| Anchor { vehicle: Some(0), link, pose_la: Pose::translation(x, 0.0, 0.4) };
-        let hold = Bushing { stiffness: Vec3::repeat(2e4), damping: Vec3::repeat(50.0), ..Bushing::default() };
-        let bar = mechanism("bar", tip(1, 0.2), tip(2, -0.2), MechanismKind::Bushing(hold));
+        let tip = |link| Anchor { vehicle: Some(0), link, pose_la: Pose::translation(0.0, 0.0, 0.4) };
+        let strut = Strut { rest_length: 0.4, stiffness: 2e4, damping: 50.0, ..Strut::default() };
+        let bar = mechanism("bar", tip(1), tip(2), MechanismKind::Strut(strut));
         let mut spec = spec(vec![(tree, Base::Free)], &Setup::new(integrator).step(2e-4));
         spec.mechanisms = vec![bar];
         let mut world = world(spec);
-        world.state_mut().v.copy_from_slice(&[0.4, 0.4]);
+        world.state_mut().v.copy_from_slice(&[0.4, 0.0]);
         world.set_base_twists(&[Twist::default()]);
         let mut audit = MomentumAudit::new(&world);
         run(&mut world, 2_500);
         audit.update(&world);
         let [left, right] = [world.state().q[0], world.state().q[1]];
-        let gap = world.mechanisms().next().unwrap().deformation[3..].iter().map(|x| x * x).sum::<f64>().sqrt();
+        let gap = (world.mechanisms().next().unwrap().deformation[0] - 0.4).abs();
         println!("{integrator:?}: {left:.4} and {right:.4} rad, gap {gap:.1e} m, drift {:.1e}", audit.angular_drift);
-        assert!(left > 0.005 && gap < 5e-3, "{integrator:?}");
+        assert!(left > 0.05 && (left - right).abs() < 1e-2 * left && gap < 1e-3, "{integrator:?}");
         assert!(audit.linear_drift < 1e-12 && audit.angular_drift < 1e-12, "{integrator:?}");
     }
 }
@@ -175,7 +177,8 @@ fn weld_within_one_vehicle_closes_a_loop() {
 #[test]
 fn bushing_on_a_guided_base_acts_only_where_the_guide_lets_it() {
     for integrator in ALL {
-        let tie = mechanism("tie", ground(Pose::identity()), at(0, 0.0, 0.0, 0.0), MechanismKind::Bushing(six_springs()));
+        let tie =
+            mechanism("tie", ground(Pose::identity()), at(0, 0.0, 0.0, 0.0), MechanismKind::Bushing(six_springs()));
         let rail = Base::Only([false, false, false, true, false, false]);
         let setup = Setup::new(integrator).step(1e-4);
         let mut world =

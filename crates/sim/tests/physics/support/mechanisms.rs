@@ -1,7 +1,7 @@
 //! Small worlds with mechanisms.
 
-use super::{Setup, block, spec, world};
-use sim::{Account, Anchor, Base, Energy, Mechanism, MechanismKind, ModelSpec, Strut, World};
+use super::{Setup, block, spec, twist, world};
+use sim::{Account, Anchor, Base, Bushing, Energy, Mechanism, MechanismKind, ModelSpec, Strength, Strut, Weld, World};
 use spatial::{Pose, Rot, Vec3};
 
 /// Half the edges of the usual free body of 2 kg, m.
@@ -44,7 +44,7 @@ pub(crate) fn tied_block(kind: MechanismKind, setup: &Setup) -> World {
 }
 
 /// Six struts between the base (vehicle 0, 40 kg) and a ring (vehicle 1, 4 kg) 0.3 m above: a soft-capture ring. A striker
-/// of 15 kg (vehicle 2) hangs on a bushing that stands for the first touch, off the ring's centre.
+/// of 15 kg (vehicle 2) hangs on a soft weld that stands for the first touch, off the ring's centre.
 pub(crate) fn ring_spec(strut: Strut, setup: &Setup) -> ModelSpec {
     let mut mechanisms = Vec::new();
     for k in 0..6_u8 {
@@ -56,6 +56,10 @@ pub(crate) fn ring_spec(strut: Strut, setup: &Setup) -> ModelSpec {
         let head = at(1, 0.4 * high.cos(), 0.4 * high.sin(), 0.0);
         mechanisms.push(mechanism(&format!("strut{k}"), foot, head, MechanismKind::Strut(strut)));
     }
+    let touch = Weld { hold: Bushing::isotropic([4e3, 40.0], [60.0, 2.0]), strength: Strength::default() };
+    let [_, ring, striker] = ring_places();
+    let on_striker = striker.inverse() * ring * Pose::translation(0.3, 0.1, 0.0);
+    mechanisms.push(mechanism("touch", at(1, 0.3, 0.1, 0.0), on(2, on_striker), MechanismKind::Weld(touch)));
     let vehicles = vec![
         (block(40.0, Vec3::new(0.6, 0.6, 0.1)), Base::Free),
         (block(4.0, Vec3::new(0.4, 0.4, 0.02)), Base::Free),
@@ -64,12 +68,24 @@ pub(crate) fn ring_spec(strut: Strut, setup: &Setup) -> ModelSpec {
     ModelSpec { mechanisms, ..spec(vehicles, setup) }
 }
 
-/// Poses of base, ring and striker at the start.
-pub(crate) fn place_ring(world: &mut World) {
-    world.state_mut().bases[1] = Pose::translation(0.0, 0.0, 0.4);
+fn ring_places() -> [Pose; 3] {
     let tilt = Rot::from_scaled_axis(Vec3::new(0.1, -0.05, 0.2));
-    world.state_mut().bases[2] = Pose::from_parts(Vec3::new(0.25, 0.1, 0.75).into(), tilt);
-    world.refresh();
+    let striker = Pose::from_parts(Vec3::new(0.25, 0.1, 0.75).into(), tilt);
+    [Pose::identity(), Pose::translation(0.0, 0.0, 0.4), striker]
+}
+
+/// Base, ring and striker at the start: the striker comes down, turning.
+pub(crate) fn start_ring(world: &mut World) {
+    world.state_mut().bases.copy_from_slice(&ring_places());
+    let still = twist([0.0; 3], [0.0; 3]);
+    world.set_base_twists(&[still, still, twist([0.05, 0.02, -0.1], [0.02, -0.05, -0.3])]);
+}
+
+/// The ring's world at its start.
+pub(crate) fn struck_ring(strut: Strut, setup: &Setup) -> World {
+    let mut world = world(ring_spec(strut, setup));
+    start_ring(&mut world);
+    world
 }
 
 /// Length of each strut where the world stands.
