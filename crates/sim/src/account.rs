@@ -113,6 +113,8 @@ pub struct Energy {
     pub potential: f64,
     /// Stored in contact: normal springs and bristles.
     pub elastic: f64,
+    /// Stored in mechanisms.
+    pub mechanism: f64,
 }
 
 impl Energy {
@@ -125,7 +127,8 @@ impl Energy {
             for_each_link(world, |m, x, _| potential += model.environment.calc_potential(world.state().time, &x, m));
         }
         let elastic = world.touches().map(|t| calc_elastic(world, t.pair, t.gap, t.deflection)).sum();
-        Self { kinetic, potential, elastic }
+        let mechanism = world.mechanisms().map(|m| m.stored).sum();
+        Self { kinetic, potential, elastic, mechanism }
     }
 }
 

@@ -29,6 +29,7 @@ mod actuator;
 mod contacts;
 mod environment;
 mod error;
+mod mechanism;
 mod model;
 mod rk4;
 mod run;
@@ -42,6 +43,10 @@ pub use account::{Energy, MomentumAudit};
 pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
 pub use environment::Environment;
 pub use error::{ModelError, StepError};
+pub use mechanism::{
+    Anchor, Bushing, Capture, Latch, Mechanism, MechanismKind, MechanismMemory, MechanismReport, MechanismStatus,
+    Overload, PullIn, Side, Strength, Strut, StrutSides, Weld,
+};
 pub use model::{Base, Grain, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, Vehicle, VehicleSpec};
 pub use run::{Controller, Flow, NoControl, Observer};
 pub use state::{Account, ContactMemory, State, Work};

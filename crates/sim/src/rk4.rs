@@ -3,11 +3,12 @@
 //!   y = (base position, rotation vector from the step's start, joint displacement, v, p, L, s)
 //!
 //! Every stage takes the base twist from its momentum, so every stage conserves, and so does the sum. Rotation vectors
-//! follow θ̇ = ω − ½ θ×ω + 1/12 θ×(θ×ω). Bristles are integrated in B's axes; points that touch down within a step get
+//! follow θ̇ = ω − ½ θ×ω + 1/12 θ×(θ×ω). Bristles are integrated in the plane of the step's start; points that touch down within a step get
 //! theirs at its end. Sliding bristles turn at |u|/s_max, which wants h < 2 s_max/|u|.
 
 use crate::actuator::CoordinatePoint;
 use crate::contacts::{Touch, Turned, find_memory, find_touches};
+use crate::mechanism;
 use crate::model::Model;
 use crate::solve;
 use crate::state::{Account, ContactMemory, State};
@@ -105,6 +106,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     ws.update_positions(model, state);
     finish(model, state, ws);
     carry_to_the_end(model, state, ws);
+    mechanism::commit(model, state, ws);
 }
 
 /// Every touching point gets a slot, in the order of touches; its deflection is cut to what the normal force holds.
@@ -175,6 +177,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     let slots = rk.slots.len();
     rk.rate.reset(model, slots);
     eval_contacts(model, ws, rk);
+    mechanism::eval_explicit(model, state, ws);
     eval_coordinates(model, state, ws, rk);
     calc_external(model, state, ws);
     calc_bias(model, state, ws, false);

@@ -12,6 +12,7 @@
 
 use crate::actuator::{ActuatorKind, CoordinatePoint};
 use crate::contacts::{Place, Touch, commit_bristles, find_touches};
+use crate::mechanism;
 use crate::model::{Base, Model};
 use crate::solve;
 use crate::state::State;
@@ -47,6 +48,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     calc_external(model, state, ws);
     calc_bias(model, state, ws, false);
     find_touches(model, state, ws, h);
+    mechanism::find_couplings(model, state, ws);
     place_laws(model, state, ws, scheme);
     solve_laws(model, state, ws, scheme);
     add_impulses(model, state, ws, h);
@@ -58,6 +60,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     place_centres(model, state, ws, scheme);
     finish(model, state, ws);
     commit_bristles(model, state, ws);
+    mechanism::commit(model, state, ws);
 }
 
 /// Shifts every base so that its vehicle's centre of mass moves by h p/m exactly, with the momentum that moves it.
@@ -150,6 +153,7 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
 /// Decides for every touch and coordinate where its law is evaluated, and draws the first lines at zero gain.
 fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) {
     let h = model.step;
+    mechanism::place(model, ws, scheme);
     for i in 0..ws.touches.len() {
         let is_stiff = scheme == Scheme::ImplicitMidpoint && is_stiff(model, &ws.touches, i);
         let touch = &mut ws.touches[i];
@@ -233,7 +237,7 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
         must_factor = !converged;
         if first_midpoint_pass {
             recalc_bias_at_midpoint(model, state, ws);
-            must_factor |= !ws.touches.is_empty();
+            must_factor |= !ws.touches.is_empty() || !ws.couplings.is_empty();
         }
         if converged && !first_midpoint_pass {
             break;
@@ -260,6 +264,7 @@ fn recalc_bias_at_midpoint(model: &Model, state: &State, ws: &mut Workspace) {
         touch.out.line -= touch.out.g * (carried - touch.carried) / model.step;
         touch.carried = carried;
     }
+    mechanism::update_carried(model, ws);
     // The start's twists come back: gains are counted from them.
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let (start, range) = (ws.base_start[i], vehicle.v_range());
@@ -295,7 +300,7 @@ fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
         ws.coordinate_forces[i] = crate::actuator::CoordinateForce { effort: on_line, ..law };
         ws.coordinate_lines[i] = (law.effort + law.slope * ws.v_gain[i], law.slope);
     }
-    joints_hold && check.holds()
+    mechanism::laws_hold(model, ws) && joints_hold && check.holds()
 }
 
 /// Compares lines with laws, pair by pair: a miss counts against the largest force of its own pair, so that a press
@@ -344,6 +349,7 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         let u_mean = touch.u + 0.5 * relative_gain(model, ws, touch);
         state.account.contact_work += impulse.dot(&u_mean);
     }
+    mechanism::add_impulses(model, state, ws, h);
     for (i, _) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
         let force = &ws.coordinate_forces[i];
         let moved = h * (state.v[i] + 0.5 * ws.v_gain[i]);
