@@ -43,6 +43,8 @@ pub(crate) struct Touch {
     pub rest: f64,
     /// Direction along which the friction levels are meant; zero where there is none.
     pub grain: Vec3,
+    /// Angular deflection of a pair with a pivot, rad.
+    pub turn: Vec3,
     /// Velocity of B's point relative to A's at the start.
     pub u: Vec3,
     /// What the bodies' turning adds to it over the step, without any gain: h (ω_B − ω_A) × ẋ_C. Gains are spatial, those
@@ -216,6 +218,7 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
             s: Vec3::zeros(),
             rest: 0.0,
             grain: Vec3::zeros(),
+            turn: Vec3::zeros(),
             u,
             carried: Vec3::zeros(),
             place: Place::default(),
@@ -304,6 +307,9 @@ impl Touch {
         let bodies = (self.body_a, self.body_b);
         self.s = turned.deflection(bodies, &memory.s_w, &memory.normal_w, &self.normal);
         self.rest = memory.rest;
+        if memory.turn_w != Vec3::zeros() {
+            self.turn = turned.deflection(bodies, &memory.turn_w, &memory.normal_w, &self.normal);
+        }
     }
 
     /// What is kept of the point when the bodies have moved on from the place of detection to frames `a` and `b`: the
@@ -314,8 +320,13 @@ impl Touch {
         let normal_w = mean_of(&n_a, &n_b);
         let carried = mean_of(&carry(&s_a, &n_a, &normal_w), &carry(&s_b, &n_b, &normal_w));
         let s_w = carried + slipped - normal_w * normal_w.dot(slipped);
+        let mut turn_w = self.turn;
+        if turn_w != Vec3::zeros() {
+            let (t_a, t_b) = with(&turn_w);
+            turn_w = mean_of(&carry(&t_a, &n_a, &normal_w), &carry(&t_b, &n_b, &normal_w));
+        }
         let Self { pair, feature, local_b: point_b, .. } = *self;
-        ContactMemory { pair, feature, s_w, normal_w, rest: self.out.rest, point_b }
+        ContactMemory { pair, feature, s_w, normal_w, turn_w, rest: self.out.rest, point_b }
     }
 }
 
@@ -324,7 +335,7 @@ impl Touch {
 pub(crate) fn commit_bristles(model: &Model, state: &mut State, ws: &mut Workspace) {
     ws.memories.clear();
     for touch in &ws.touches {
-        if model.laws[touch.pair as usize].friction.is_none() || touch.out.normal_force <= 0.0 {
+        if !model.laws[touch.pair as usize].remembers() || touch.out.normal_force <= 0.0 {
             continue;
         }
         let (b0, b1) = (&ws.frames_start[touch.body_b], &ws.frames[touch.body_b]);
@@ -332,7 +343,12 @@ pub(crate) fn commit_bristles(model: &Model, state: &mut State, ws: &mut Workspa
         let memory = if touch.out.sticks {
             let now = b1.point(&touch.local_b) - a1.point(&touch.local_a);
             let start = b0.point(&touch.local_b) - a0.point(&touch.local_a);
-            touch.remembered(&touch.s, &(now - start), (a1, b1))
+            // Detected at the start, the two points coincide there; detected at mid-step they may not, and what parts them
+            // turns with the bodies: taken as it was, its normal part would enter the plane step by step.
+            let is_at_start = touch.rot_a == a0.rot && touch.rot_b == b0.rot;
+            let with = |from: &Frame, to: &Frame| to.rot * from.rot.tr_mul(&start);
+            let turned = if is_at_start { start } else { mean_of(&with(a0, a1), &with(b0, b1)) };
+            touch.remembered(&touch.s, &(now - turned), (a1, b1))
         } else {
             touch.remembered(&touch.out.s, &Vec3::zeros(), (a1, b1))
         };

@@ -31,6 +31,7 @@ mod environment;
 mod error;
 mod mechanism;
 mod model;
+mod pivots;
 mod rk4;
 mod run;
 mod solve;

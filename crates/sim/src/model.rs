@@ -8,7 +8,7 @@ use crate::environment::Environment;
 use crate::error::ModelError;
 use crate::mechanism::{Mechanism, MechanismKind};
 use contact::{Collider, Normal, Scene};
-use friction::Friction;
+use friction::{Friction, Pivot};
 use multibody::{JointKind, Tree};
 use spatial::{Frame, Pose, Vec3};
 
@@ -70,14 +70,21 @@ pub struct PairLaw {
     pub normal: Normal,
     /// In the tangent plane; `None` for a frictionless pair.
     pub friction: Option<Friction>,
+    /// Against spinning and rolling, lumped in every point; `None` where several points of a patch do it.
+    pub pivot: Option<Pivot>,
     /// Direction along which the friction levels are meant, for a law that differs across it.
     pub grain: Option<Grain>,
 }
 
 impl PairLaw {
-    /// Laws without a grain.
+    /// Laws of forces alone, without a grain.
     pub fn new(normal: Normal, friction: Option<Friction>) -> Self {
-        Self { normal, friction, grain: None }
+        Self { normal, friction, pivot: None, grain: None }
+    }
+
+    /// Whether its points have memory.
+    pub(crate) fn remembers(&self) -> bool {
+        self.friction.is_some() || self.pivot.is_some()
     }
 }
 

@@ -10,11 +10,12 @@ use crate::actuator::CoordinatePoint;
 use crate::contacts::{Touch, Turned, find_memory, find_touches};
 use crate::mechanism;
 use crate::model::Model;
+use crate::pivots;
 use crate::solve;
 use crate::state::{Account, ContactMemory, State};
 use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
 use crate::workspace::Workspace;
-use friction::{Friction, Trial};
+use friction::{Friction, Trial, carry};
 use spatial::{Mat3, Twist, Vec3, Wrench, log_rotation, rotation_rate_of_vector};
 
 /// Scratch of the stages.
@@ -105,6 +106,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     ws.rk = rk;
     ws.update_positions(model, state);
     finish(model, state, ws);
+    pivots::commit(ws);
     carry_to_the_end(model, state, ws);
     mechanism::commit(model, state, ws);
 }
@@ -114,11 +116,13 @@ fn open_slots(model: &Model, ws: &Workspace, slots: &mut Vec<ContactMemory>) {
     slots.clear();
     for touch in &ws.touches {
         let law = &model.laws[touch.pair as usize];
-        let Some(friction) = &law.friction else { continue };
+        if !law.remembers() {
+            continue;
+        }
         let compression = law.normal.eval(touch.gap, touch.normal.dot(&touch.u)).force + law.normal.adhesion;
-        let s_w = friction.eval_rate(&trial_of(touch, compression)).s;
-        let Touch { pair, feature, normal: normal_w, rest, local_b: point_b, .. } = *touch;
-        slots.push(ContactMemory { pair, feature, s_w, normal_w, rest, point_b });
+        let s_w = law.friction.map_or(Vec3::zeros(), |f| f.eval_rate(&trial_of(touch, compression)).s);
+        let Touch { pair, feature, normal: normal_w, turn: turn_w, rest, local_b: point_b, .. } = *touch;
+        slots.push(ContactMemory { pair, feature, s_w, normal_w, turn_w, rest, point_b });
     }
 }
 
@@ -137,6 +141,9 @@ fn carry_to_the_end(model: &Model, state: &mut State, ws: &Workspace) {
         memory.s_w = turned.deflection(bodies, &memory.s_w, &memory.normal_w, &normal);
         memory.normal_w = normal;
         let touch = ws.touches.iter().find(|t| (t.pair, t.feature) == (memory.pair, memory.feature));
+        if let Some(touch) = touch {
+            memory.turn_w = carry(&touch.turn, &touch.normal, &normal);
+        }
         if let (Some(touch), Some(Friction::Bristle(law))) = (touch, &model.laws[memory.pair as usize].friction) {
             let speed = (touch.u - touch.normal * touch.normal.dot(&touch.u)).norm();
             let rest = law.levels().calc_rest(memory.rest, speed, model.step);
@@ -178,6 +185,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     rk.rate.reset(model, slots);
     eval_contacts(model, ws, rk);
     mechanism::eval_explicit(model, state, ws);
+    pivots::eval_explicit(model, ws, state.time - rk.start.time);
     eval_coordinates(model, state, ws, rk);
     calc_external(model, state, ws);
     calc_bias(model, state, ws, false);

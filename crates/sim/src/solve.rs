@@ -9,6 +9,7 @@
 use crate::contacts::Touch;
 use crate::mechanism::{self, Coupling};
 use crate::model::Model;
+use crate::pivots;
 use crate::workspace::Workspace;
 use multibody::{Kinematics, Tree};
 use spatial::{SpatialMatrix, Twist, Vec3, Wrench};
@@ -89,6 +90,7 @@ pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
         }
     }
     mechanism::add_stiffness(model, ws, h);
+    pivots::add_stiffness(model, ws, h);
     ws.islands.regroup(model, &ws.touches, &ws.couplings);
     for i in 0..model.vehicles.len() {
         add_vehicle(model, ws, i, h);
@@ -97,6 +99,11 @@ pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
     for k in 0..ws.couplings.len() {
         if let Some(([a, b], coupling)) = mechanism::calc_cross(model, ws, k, h) {
             add_cross(model, ws, [a, b], &coupling);
+        }
+    }
+    for k in 0..ws.pivots.len() {
+        if let Some((bodies, coupling)) = pivots::calc_cross(model, ws, k, h) {
+            add_cross(model, ws, bodies, &coupling);
         }
     }
     let Islands { size, start, matrix, .. } = &mut ws.islands;
@@ -202,6 +209,7 @@ pub(crate) fn solve(model: &Model, ws: &mut Workspace, h: f64) {
         }
     }
     mechanism::add_wrenches(model, ws);
+    pivots::add_moments(model, ws);
     for i in 0..model.vehicles.len() {
         write_rhs(model, ws, i, h);
     }

@@ -53,6 +53,8 @@ pub struct ContactMemory {
     pub s_w: Vec3,
     /// Contact normal, from A to B, W axes.
     pub normal_w: Vec3,
+    /// Angular deflection of a pair that resists turning: spin along the normal, rolling across it, W axes, rad.
+    pub turn_w: Vec3,
     /// How rested the point is, from 0 (sliding) to 1.
     pub rest: f64,
     /// The point in B's body frame, m: identity of last resort.

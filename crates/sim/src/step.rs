@@ -14,6 +14,7 @@ use crate::actuator::{ActuatorKind, CoordinatePoint};
 use crate::contacts::{Place, Touch, commit_bristles, find_touches};
 use crate::mechanism;
 use crate::model::{Base, Model};
+use crate::pivots;
 use crate::solve;
 use crate::state::State;
 use crate::workspace::{Workspace, world_wrench};
@@ -49,6 +50,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     calc_bias(model, state, ws, false);
     find_touches(model, state, ws, h);
     mechanism::find_couplings(model, state, ws);
+    pivots::find_pivots(model, ws);
     place_laws(model, state, ws, scheme);
     solve_laws(model, state, ws, scheme);
     add_impulses(model, state, ws, h);
@@ -59,6 +61,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     ws.update_positions(model, state);
     place_centres(model, state, ws, scheme);
     finish(model, state, ws);
+    pivots::commit(ws);
     commit_bristles(model, state, ws);
     mechanism::commit(model, state, ws);
 }
@@ -169,6 +172,7 @@ fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) 
             touch.out.line = touch.out.law;
         }
     }
+    pivots::place(model, ws, h);
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
         let (q, v) = (state.q[coordinate.q_index], state.v[i]);
         // At the midpoint q has drifted by h/2 v already: its base is the start's plus h/4 v.
@@ -300,7 +304,8 @@ fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
         ws.coordinate_forces[i] = crate::actuator::CoordinateForce { effort: on_line, ..law };
         ws.coordinate_lines[i] = (law.effort + law.slope * ws.v_gain[i], law.slope);
     }
-    mechanism::laws_hold(model, ws) && joints_hold && check.holds()
+    let pivots_hold = pivots::laws_hold(model, ws);
+    mechanism::laws_hold(model, ws) && pivots_hold && joints_hold && check.holds()
 }
 
 /// Compares lines with laws, pair by pair: a miss counts against the largest force of its own pair, so that a press
@@ -350,6 +355,7 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         state.account.contact_work += impulse.dot(&u_mean);
     }
     mechanism::add_impulses(model, state, ws, h);
+    pivots::add_impulses(model, state, ws, h);
     for (i, _) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
         let force = &ws.coordinate_forces[i];
         let moved = h * (state.v[i] + 0.5 * ws.v_gain[i]);

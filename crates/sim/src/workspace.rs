@@ -21,6 +21,7 @@ pub(crate) struct Workspace {
     pub reach: Vec<f64>,
     pub touches: Vec<Touch>,
     pub couplings: Vec<crate::mechanism::Coupling>,
+    pub pivots: Vec<crate::pivots::PivotTouch>,
     /// Per body, about its vehicle's anchor: forces from outside, then what motion takes beyond them.
     pub external: Vec<Wrench>,
     pub bias: Vec<Wrench>,
@@ -72,6 +73,7 @@ impl Workspace {
             reach: vec![0.0; bodies],
             touches: Vec::new(),
             couplings: Vec::with_capacity(model.mechanisms.len()),
+            pivots: Vec::new(),
             external: vec![Wrench::default(); bodies],
             bias: vec![Wrench::default(); bodies],
             contact: vec![Wrench::default(); bodies],

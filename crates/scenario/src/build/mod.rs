@@ -60,6 +60,7 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
         vehicles: specs,
         shapes,
         pairs,
+        mechanisms: Vec::new(),
         actuators: table.actuators.clone(),
         environment: environment(&scenario.environment),
         integrator: integrator(scenario.integrator.kind),

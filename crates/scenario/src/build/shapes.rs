@@ -4,7 +4,7 @@
 //! vehicle only where a `[[contact]]` names them. Every shape answers to its own name and to its link's.
 
 use super::faults::Faults;
-use super::laws::pair_law;
+use super::laws::{pair_law, pivot_law};
 use crate::spec::{Grain, Scenario, ShapeKind};
 use contact::Shape;
 use multibody::{Geometry, RobotDescription};
@@ -145,6 +145,15 @@ fn check_rules(scenario: &Scenario, shapes: &[Named], faults: &mut Faults<'_>) {
                 faults.unknown(&format!("contact[{i}].between[{k}]"), "shape or link", pattern, valid);
             }
         }
+        if let Some(grain) = &rule.grain
+            && !rule
+                .between
+                .iter()
+                .any(|side| crate::glob_matches(&grain.on, side) || crate::glob_matches(side, &grain.on))
+        {
+            let sides = rule.between.iter().map(String::as_str);
+            faults.unknown(&format!("contact[{i}].grain.on"), "side of this contact", &grain.on, sides);
+        }
     }
 }
 
@@ -158,12 +167,15 @@ fn law_of_pair(scenario: &Scenario, vehicles: &[VehicleSpec], a: &Named, b: &Nam
         names_a.iter().find(|a| named(a))?;
     }
     let law = scenario.contact_law(&names_a, &names_b);
-    let grain = scenario.contact_rule(&names_a, &names_b).and_then(|r| r.grain.as_ref());
+    let rule = scenario.contact_rule(&names_a, &names_b);
+    let grain = rule.and_then(|r| r.grain.as_ref());
+    let pivot = rule.and_then(|r| r.pivot.as_ref()).map(pivot_law);
     let on_side = |on: &str, names: &[&str]| names.iter().any(|n| crate::glob_matches(on, n));
     law.enabled.then(|| {
         let grain = grain.map(|g| (g, on_side(&g.on, &names_b)));
         PairLaw {
             grain: grain.map(|(g, on_b)| grain_on(vehicles, if on_b { b } else { a }, g, on_b)),
+            pivot,
             ..pair_law(&law)
         }
     })
