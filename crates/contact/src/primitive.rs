@@ -38,9 +38,15 @@ impl PrimitiveBuffer {
             Frame { rot: frame_a.rot.tr_mul(&frame_b.rot), pos: frame_a.rot.tr_mul(&(frame_b.pos - frame_a.pos)) };
         let couple = Couple { a, b, frame_ab, scale: a.scale().min(b.scale()) };
         let radii = a.radius + b.radius;
-        let Some(axis) = couple.find_axis(margin + radii) else { return true };
-        if self.add_along(&couple, &axis, (frame_a, margin), out) {
+        let Some(axes) = couple.find_axis(margin + radii) else { return true };
+        if self.add_along(&couple, &axes.best, (frame_a, margin), out) {
             return true;
+        }
+        // Along a face that the other does not lie over: apart by more than the margin, or nearest in another direction.
+        match axes.otherwise {
+            Some(axis) if axis.gap > margin + radii => return true,
+            Some(axis) if self.add_along(&couple, &axis, (frame_a, margin), out) => return true,
+            _ => {}
         }
         match couple.find_rim_axis() {
             Some(axis) if axis.gap > margin + radii => true,
