@@ -23,7 +23,7 @@ use crate::convex::{Convex, Core};
 use spatial::{Frame, Vec3};
 
 /// Cosine of the angle (10°) between two normals below which they count as the same side.
-const FLAT: f64 = 0.984_807_753_012_208;
+pub(crate) const FLAT: f64 = 0.984_807_753_012_208;
 /// Difference of separations, in extents of the smaller shape, over which the normal goes from one face's to the other's.
 const BLEND: f64 = 1e-2;
 /// Axial part of a direction below which a cylinder that meets it lies on its side: the sine of the angle of [`FLAT`].

@@ -5,12 +5,12 @@
 
 use crate::analytic::{Raw, ball_ball, plane_ball, plane_cuboid, swapped};
 use crate::convex::{Convex, Core};
-use crate::manifold::{ManifoldBuffer, mix};
+use crate::faceted::FacetBuffer;
+use crate::manifold::{add_nearest, mix};
 use crate::primitive::{PrimitiveBuffer, convex_ball};
 use crate::reduce::reduce;
-use crate::scene::{ContactPoint, NONE, Part, Scene, Solid};
-use parry3d_f64::shape::{Ball, Shape};
-use spatial::{Frame, Mat3, Vec3};
+use crate::scene::{ContactPoint, NONE, Part, Scene, Solid, Twin};
+use spatial::{Frame, Vec3};
 
 /// Distance, m, at which points are reported although nothing moves.
 const SKIN: f64 = 1e-4;
@@ -23,12 +23,9 @@ pub struct Detector {
     raw: Vec<Raw>,
     nearest: Vec<f64>,
     primitives: PrimitiveBuffer,
-    manifolds: ManifoldBuffer,
+    facets: FacetBuffer,
     narrow: u64,
 }
-
-/// What parry is asked for: all points, or the nearest.
-type Question = fn(&mut ManifoldBuffer, (&dyn Shape, &Frame), (&dyn Shape, &Frame), f64, &mut Vec<Raw>);
 
 /// A box in W axes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -54,7 +51,7 @@ impl Detector {
             raw: Vec::with_capacity(64),
             nearest: Vec::new(),
             primitives: PrimitiveBuffer::default(),
-            manifolds: ManifoldBuffer::default(),
+            facets: FacetBuffer::default(),
             narrow: 0,
         }
     }
@@ -120,12 +117,14 @@ impl Detector {
                 if other.low.x > own.high.x {
                     break;
                 }
-                let apart = own.low.y > other.high.y
-                    || other.low.y > own.high.y
-                    || own.low.z > other.high.z
-                    || other.low.z > own.high.z;
+                // Said this way round, a pose that is not a number touches nothing.
+                let near = own.low.x <= other.high.x
+                    && own.low.y <= other.high.y
+                    && other.low.y <= own.high.y
+                    && own.low.z <= other.high.z
+                    && other.low.z <= own.high.z;
                 let pair = scene.pair_of[(i.min(j) as usize) * n + i.max(j) as usize];
-                if !apart && pair != NONE {
+                if near && pair != NONE {
                     self.candidates.push(pair);
                 }
             }
@@ -163,11 +162,15 @@ impl Detector {
             }
             (Solid::Primitive(pa, _), Solid::Primitive(pb, _)) => {
                 if !self.primitives.add_points((pa, frame_a), (pb, frame_b), margin, &mut self.raw) {
-                    self.ask_parry((a, frame_a), (b, frame_b), margin, ManifoldBuffer::add_nearest);
+                    self.ask_parry((a, frame_a), (b, frame_b), margin);
                 }
                 return;
             }
-            _ => return self.ask_parry((a, frame_a), (b, frame_b), margin, ManifoldBuffer::add_points),
+            // Two of them never touch.
+            (Solid::HalfSpace(_), Solid::HalfSpace(_)) => return,
+            (Solid::Other(..), _) | (_, Solid::Other(..)) => {
+                return self.facets.add_points((a, frame_a), (b, frame_b), margin, &mut self.raw);
+            }
         };
         if one.gap < margin {
             self.raw.push(one);
@@ -181,29 +184,18 @@ impl Detector {
         }
     }
 
-    fn ask_parry(
-        &mut self,
-        (a, frame_a): (&Part, &Frame),
-        (b, frame_b): (&Part, &Frame),
-        margin: f64,
-        question: Question,
-    ) {
-        let (ball_a, ball_b) = (ball_of(&a.solid), ball_of(&b.solid));
-        let (shape_a, turn_a) = twin_of(&a.solid, &ball_a);
-        let (shape_b, turn_b) = twin_of(&b.solid, &ball_b);
-        let turned = |frame: &Frame, turn: &Mat3| Frame { rot: frame.rot * turn, pos: frame.pos };
-        let (frame_a, frame_b) = (turned(frame_a, &turn_a), turned(frame_b, &turn_b));
-        question(&mut self.manifolds, (shape_a, &frame_a), (shape_b, &frame_b), margin, &mut self.raw);
+    /// The nearest or deepest point of two primitives, where axes do not say.
+    fn ask_parry(&mut self, (a, frame_a): (&Part, &Frame), (b, frame_b): (&Part, &Frame), margin: f64) {
+        let (Some(twin_a), Some(twin_b)) = (twin_of(&a.solid), twin_of(&b.solid)) else { return };
+        let turned = |frame: &Frame, twin: &Twin| Frame { rot: frame.rot * twin.turn, pos: frame.pos };
+        let (frame_a, frame_b) = (turned(frame_a, twin_a), turned(frame_b, twin_b));
+        add_nearest((&*twin_a.shape, &frame_a), (&*twin_b.shape, &frame_b), margin, &mut self.raw);
     }
 }
 
-fn ball_of(solid: &Solid) -> Ball {
-    Ball::new(if let Solid::Ball(radius) = solid { *radius } else { 0.0 })
-}
-
-fn twin_of<'a>(solid: &'a Solid, ball: &'a Ball) -> (&'a dyn Shape, Mat3) {
+fn twin_of(solid: &Solid) -> Option<&Twin> {
     match solid {
-        Solid::Ball(_) => (ball, Mat3::identity()),
-        Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Other(twin) => (&*twin.shape, twin.turn),
+        Solid::Ball(_) => None,
+        Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Other(twin, _) => Some(twin),
     }
 }

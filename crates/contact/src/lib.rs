@@ -33,6 +33,7 @@ mod convex;
 mod cylinder;
 mod detector;
 mod error;
+mod faceted;
 mod glob;
 mod manifold;
 mod normal;

@@ -9,7 +9,7 @@
 //! those over crossings. Edges that part by less than the tolerance over their whole length do not cross: their ends say
 //! the same.
 
-use crate::patch::{Corner, Patch, tangents};
+use crate::patch::{Corner, Disc, Patch, tangents};
 use spatial::Vec3;
 
 /// Sine of the angle below which two lone edges touch along a line (two points) instead of crossing (one).
@@ -33,6 +33,16 @@ struct Flat {
     rise: f64,
 }
 
+/// A disc seen along n: its body-fixed coordinates are affine in x and y.
+#[derive(Clone, Copy, Debug)]
+struct FlatDisc {
+    at_origin: [f64; 2],
+    per_x: [f64; 2],
+    per_y: [f64; 2],
+    radius: f64,
+    rim: u32,
+}
+
 /// A projected patch.
 #[derive(Debug, Default)]
 struct Side {
@@ -40,6 +50,7 @@ struct Side {
     whole: u32,
     /// Rise of the plane's height per metre of x and y; `None` where it is seen edge-on.
     slope: Option<(f64, f64)>,
+    disc: Option<FlatDisc>,
 }
 
 /// A corner of the overlap, with the heights of both patches.
@@ -50,9 +61,11 @@ pub(crate) struct Meeting {
     height_a: f64,
     height_b: f64,
     /// Feature of A.
-    fa: u32,
+    pub(crate) fa: u32,
     /// Feature of B.
-    fb: u32,
+    pub(crate) fb: u32,
+    /// Where an edge crosses a lone line: cosine between n and their common perpendicular; 1 elsewhere.
+    pub(crate) upright: f64,
 }
 
 impl Meeting {
@@ -111,7 +124,7 @@ impl Overlap {
                 && let Some(height_a) = self.a.height(f.x, f.y)
             {
                 let (fa, fb) = (self.a.whole, f.vertex);
-                self.push(Meeting { x: f.x, y: f.y, height_a, height_b: f.h, fa, fb });
+                self.push(Meeting { x: f.x, y: f.y, height_a, height_b: f.h, fa, fb, upright: 1.0 });
             }
         }
     }
@@ -123,18 +136,52 @@ impl Overlap {
                 && let Some(height_b) = self.b.height(f.x, f.y)
             {
                 let (fa, fb) = (f.vertex, self.b.whole);
-                self.push(Meeting { x: f.x, y: f.y, height_a: f.h, height_b, fa, fb });
+                self.push(Meeting { x: f.x, y: f.y, height_a: f.h, height_b, fa, fb, upright: 1.0 });
             }
         }
     }
 
     fn find_crossings(&mut self) {
+        match (self.a.disc, self.b.disc) {
+            (Some(disc), None) => return self.find_rim_crossings(&disc, true),
+            (None, Some(disc)) => return self.find_rim_crossings(&disc, false),
+            _ => {}
+        }
+        let lone = self.a.flats.len() == 2 || self.b.flats.len() == 2;
         for i in 0..self.a.edges() {
             for j in 0..self.b.edges() {
-                if let Some(m) = cross(&self.a.flats[i], &self.b.flats[j], self.tol) {
-                    self.push(m);
+                let (e, f) = (&self.a.flats[i], &self.b.flats[j]);
+                if let Some(m) = cross(e, f, self.tol) {
+                    let upright = if lone { upright(&e.along(), &f.along()) } else { 1.0 };
+                    self.push(Meeting { upright, ..m });
                 }
             }
+        }
+    }
+
+    /// Where the edges of one side cross the rim of the other, which is A's if `on_a`.
+    fn find_rim_crossings(&mut self, disc: &FlatDisc, on_a: bool) {
+        let edges = if on_a { self.b.edges() } else { self.a.edges() };
+        let lone = edges == 1;
+        for i in 0..edges {
+            let (edge, side) = if on_a { (self.b.flats[i], &self.a) } else { (self.a.flats[i], &self.b) };
+            let at = |s: f64| (edge.x + s * edge.dx, edge.y + s * edge.dy, edge.h + edge.rise * s);
+            let hits = disc.crossings(&edge, self.tol);
+            // An edge enters the disc once and leaves it once: that, not the place on the rim, is the feature.
+            let found = [(hits[0], disc.rim), (hits[1], disc.rim + 1)].map(|(hit, rim)| {
+                let (x, y, on_edge) = at(hit?);
+                let on_disc = side.height(x, y)?;
+                let upright = match side.slope {
+                    Some(slope) if lone => upright(&edge.along(), &disc.along(x, y, slope)),
+                    _ => 1.0,
+                };
+                Some(if on_a {
+                    Meeting { x, y, height_a: on_disc, height_b: on_edge, fa: rim, fb: edge.edge, upright }
+                } else {
+                    Meeting { x, y, height_a: on_edge, height_b: on_disc, fa: edge.edge, fb: rim, upright }
+                })
+            });
+            found.into_iter().flatten().for_each(|m| self.push(m));
         }
     }
 
@@ -150,14 +197,14 @@ impl Overlap {
             let s = (end.x - e.x) * e.dx + (end.y - e.y) * e.dy;
             if s >= -self.tol && s <= e.len + self.tol {
                 let (height_a, height_b) = (e.h + e.rise * s, end.h);
-                self.push(Meeting { x: end.x, y: end.y, height_a, height_b, fa: e.edge, fb: end.vertex });
+                self.push(Meeting { x: end.x, y: end.y, height_a, height_b, fa: e.edge, fb: end.vertex, upright: 1.0 });
             }
         }
         for end in [self.a.flats[0], self.a.flats[1]] {
             let s = (end.x - f.x) * f.dx + (end.y - f.y) * f.dy;
             if s >= -self.tol && s <= f.len + self.tol {
                 let (height_a, height_b) = (end.h, f.h + f.rise * s);
-                self.push(Meeting { x: end.x, y: end.y, height_a, height_b, fa: end.vertex, fb: f.edge });
+                self.push(Meeting { x: end.x, y: end.y, height_a, height_b, fa: end.vertex, fb: f.edge, upright: 1.0 });
             }
         }
     }
@@ -195,7 +242,11 @@ impl Side {
             self.flats.truncate(1);
         }
         let plane = corners.len() >= 3 && facing.abs() > EDGE_ON;
+        self.disc = None;
         self.slope = plane.then(|| (-patch.normal.dot(&axes.0) / facing, -patch.normal.dot(&axes.1) / facing));
+        if let (Some(disc), Some(slope), Some(f)) = (&patch.disc, self.slope, self.flats.first()) {
+            self.disc = Some(flatten_disc(disc, n, axes, (f, slope)));
+        }
     }
 
     fn measure_edges(&mut self) {
@@ -218,6 +269,10 @@ impl Side {
     /// Whether (x, y) lies within the patch or `tol` beside it.
     #[inline]
     fn has_inside(&self, x: f64, y: f64, tol: f64) -> bool {
+        if let Some(disc) = &self.disc {
+            let [u, v] = disc.coordinates(x, y);
+            return u * u + v * v <= (disc.radius + tol) * (disc.radius + tol);
+        }
         let across = |f: &Flat| f.dx * (y - f.y) - f.dy * (x - f.x);
         match self.flats.as_slice() {
             [f] => (x - f.x).hypot(y - f.y) <= tol,
@@ -248,6 +303,65 @@ fn flatten(c: &Corner, n: &Vec3, axes: &(Vec3, Vec3)) -> Flat {
     Flat { x, y, h, vertex: c.vertex, edge: c.edge, dx: 0.0, dy: 0.0, len: 0.0, rise: 0.0 }
 }
 
+/// A disc's coordinates over the plane across n: of the point of its own plane over (x, y).
+fn flatten_disc(disc: &Disc, n: &Vec3, axes: &(Vec3, Vec3), (f, (sx, sy)): (&Flat, (f64, f64))) -> FlatDisc {
+    let origin = n * (f.h - sx * f.x - sy * f.y) - disc.centre;
+    let [at_origin, per_x, per_y] =
+        [origin, axes.0 + n * sx, axes.1 + n * sy].map(|p| [disc.axes[0].dot(&p), disc.axes[1].dot(&p)]);
+    FlatDisc { at_origin, per_x, per_y, radius: disc.radius, rim: disc.rim }
+}
+
+impl Flat {
+    /// Along the edge, per length across n: x, y and height.
+    fn along(&self) -> Vec3 {
+        Vec3::new(self.dx, self.dy, self.rise)
+    }
+}
+
+impl FlatDisc {
+    /// Along the rim at (x, y), as [`Flat::along`].
+    fn along(&self, x: f64, y: f64, slope: (f64, f64)) -> Vec3 {
+        let [u, v] = self.coordinates(x, y);
+        let out = |per: &[f64; 2]| u * per[0] + v * per[1];
+        let (dx, dy) = (-out(&self.per_y), out(&self.per_x));
+        let len = dx.hypot(dy);
+        Vec3::new(dx, dy, slope.0 * dx + slope.1 * dy) / len
+    }
+
+    #[inline]
+    fn coordinates(&self, x: f64, y: f64) -> [f64; 2] {
+        [0, 1].map(|k| self.at_origin[k] + self.per_x[k] * x + self.per_y[k] * y)
+    }
+
+    /// How far along an edge it crosses the rim.
+    fn crossings(&self, edge: &Flat, tol: f64) -> [Option<f64>; 2] {
+        let [u, v] = self.coordinates(edge.x, edge.y);
+        let [du, dv] = [0, 1].map(|k| self.per_x[k] * edge.dx + self.per_y[k] * edge.dy);
+        let (square, along) = (du * du + dv * dv, u * du + v * dv);
+        let root = along * along - square * (u * u + v * v - self.radius * self.radius);
+        if root <= 0.0 {
+            return [None; 2];
+        }
+        [-1.0, 1.0].map(|side| {
+            let s = (-along + side * root.sqrt()) / square;
+            (s >= -tol && s <= edge.len + tol).then_some(s)
+        })
+    }
+}
+
+/// Cosine between n and the common perpendicular u of two edges that cross.
+///
+/// Of a cylinder about one of them the place nearest to the other is tan(n, u) / sin(e, f) radii from the crossing. Where
+/// that is more than one radius the crossing stops standing for it, and from two radii on the answer is 1.
+fn upright(e: &Vec3, f: &Vec3) -> f64 {
+    let across = e.cross(f);
+    let sine = across.z.abs();
+    let cosine = across.z.abs() / across.norm();
+    let away = across.xy().norm() / (across.z.abs() * sine);
+    let x = (2.0 - away).clamp(0.0, 1.0);
+    1.0 - (1.0 - cosine) * x * x * (3.0 - 2.0 * x)
+}
+
 /// The crossing of two edges, if they cross within their lengths.
 #[inline]
 fn cross(e: &Flat, f: &Flat, tol: f64) -> Option<Meeting> {
@@ -265,5 +379,5 @@ fn cross(e: &Flat, f: &Flat, tol: f64) -> Option<Meeting> {
     }
     let (s, t) = (s / size, t / size);
     let (x, y) = (e.x + s * e.dx, e.y + s * e.dy);
-    Some(Meeting { x, y, height_a: e.h + e.rise * s, height_b: f.h + f.rise * t, fa: e.edge, fb: f.edge })
+    Some(Meeting { x, y, height_a: e.h + e.rise * s, height_b: f.h + f.rise * t, fa: e.edge, fb: f.edge, upright: 1.0 })
 }

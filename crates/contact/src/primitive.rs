@@ -7,7 +7,7 @@
 //! nor which of the two faces lent its normal, so it persists while those change hands.
 
 use crate::analytic::Raw;
-use crate::axes::{Axis, Couple};
+use crate::axes::{Axis, Couple, FLAT};
 use crate::convex::{Convex, Core};
 use crate::overlap::Overlap;
 use crate::patch::Patch;
@@ -15,6 +15,10 @@ use spatial::{Frame, Vec3};
 
 /// Length, in extents of the smaller shape, below which corners of an overlap coincide.
 const SAME: f64 = 1e-6;
+
+/// How far above the lowest place of a piece its lowest contact point must be for the piece to be beside the face, in
+/// extents of the smaller shape.
+const BESIDE: f64 = 1e-4;
 
 /// Scratch of a pair.
 #[derive(Debug, Default)]
@@ -39,7 +43,9 @@ impl PrimitiveBuffer {
         let couple = Couple { a, b, frame_ab, scale: a.scale().min(b.scale()) };
         let radii = a.radius + b.radius;
         let Some(axes) = couple.find_axis(margin + radii) else { return true };
+        let start = out.len();
         if self.add_along(&couple, &axes.best, (frame_a, margin), out) {
+            self.prefer_rim(&couple, &axes.best, (frame_a, margin), (start, out));
             return true;
         }
         // Along a face that the other does not lie over: apart by more than the margin, or nearest in another direction.
@@ -55,6 +61,29 @@ impl PrimitiveBuffer {
         }
     }
 
+    /// Where a face's points are all above the lowest place of the other (it is beside the face), a rim that leans on an
+    /// edge takes their place, if its normal is not nearly the face's.
+    fn prefer_rim(
+        &mut self,
+        couple: &Couple<'_>,
+        axis: &Axis,
+        (frame_a, margin): (&Frame, f64),
+        (start, out): (usize, &mut Vec<Raw>),
+    ) {
+        let radii = couple.a.radius + couple.b.radius;
+        let found = out[start..].iter().map(|p| p.gap).fold(f64::INFINITY, f64::min);
+        if !axis.face || found + radii <= axis.gap + BESIDE * couple.scale {
+            return;
+        }
+        let better = |rim: &Axis| rim.gap > axis.gap + BESIDE * couple.scale && rim.normal.dot(&axis.normal) < FLAT;
+        if let Some(rim) = couple.find_rim_axis().filter(better) {
+            let before = out.len();
+            if self.add_along(couple, &rim, (frame_a, margin), out) {
+                out.drain(start..before);
+            }
+        }
+    }
+
     /// Adds the points along an axis; whether there are any.
     fn add_along(
         &mut self,
@@ -67,8 +96,12 @@ impl PrimitiveBuffer {
         let start = out.len();
         let normal = frame_a.rot * axis.normal;
         let radius = couple.a.radius;
+        let normal_b = couple.frame_ab.rot.tr_mul(&axis.normal);
+        let (bulge_a, bulge_b) = (couple.a.bulge(&axis.normal), couple.b.bulge(&normal_b));
         for meeting in &self.overlap.found {
-            let gap = meeting.gap() - radius - couple.b.radius;
+            let more = |bulge: &Bulge| if meeting.upright < 1.0 { bulge.of(meeting.upright) } else { 0.0 };
+            let radius = radius + more(&bulge_a);
+            let gap = meeting.gap() - radius - couple.b.radius - more(&bulge_b);
             if gap < margin {
                 let (on_a, _) = self.overlap.witnesses(meeting);
                 let point_a = frame_a.point(&(on_a + radius * axis.normal));
@@ -108,6 +141,34 @@ impl PrimitiveBuffer {
             if gap < margin {
                 out.push(Raw { feature: u64::from(corner.vertex), point_a: corner.p - height * normal, normal, gap });
             }
+        }
+    }
+}
+
+/// How a lying cylinder or capsule bulges beside the line that its patch is.
+///
+/// Over an edge, along n, the axis is h high and the surface r / (n·u) lower at its lowest, u: common perpendicular of
+/// edge and axis. The patch is r / cos φ below the axis (a cylinder's line; φ: lean) or r (a capsule's axis, less r).
+#[derive(Clone, Copy, Default)]
+struct Bulge {
+    radius: f64,
+    /// What the patch has already of r / (n·u), m.
+    counted: f64,
+}
+
+impl Bulge {
+    /// How much lower than the patch says the surface is over an edge, m. Beyond [`FLAT`] edges count for themselves.
+    fn of(self, upright: f64) -> f64 {
+        self.radius / upright.max(FLAT) - self.counted
+    }
+}
+
+impl Convex {
+    fn bulge(&self, n: &Vec3) -> Bulge {
+        match &self.core {
+            Core::Cuboid { .. } => Bulge::default(),
+            Core::Segment { .. } => Bulge { radius: self.radius, counted: self.radius },
+            Core::Cylinder(c) => Bulge { radius: c.radius, counted: c.radius / n.x.hypot(n.y).max(FLAT) },
         }
     }
 }
