@@ -103,6 +103,13 @@ impl Couple<'_> {
         Some(if lies { Axes { best, otherwise: Some(points) } } else { Axes { best: points, otherwise: None } })
     }
 
+    /// The best pair of edges, also where the faces of both are nearly parallel.
+    pub(crate) fn find_edges(&self) -> Option<Axis> {
+        let mut best = Axis { normal: Vec3::z(), gap: f64::NEG_INFINITY, face: false };
+        self.try_edges(&mut best);
+        best.gap.is_finite().then_some(best)
+    }
+
     /// Whether one of the two is a cylinder that meets `n` with a line of its side.
     fn meets_with_its_side(&self, n: &Vec3) -> bool {
         let lies = |convex: &Convex, d: &Vec3| matches!(convex.core, Core::Cylinder(_)) && d.z.abs() < LYING;

@@ -53,6 +53,17 @@ struct Side {
     disc: Option<FlatDisc>,
 }
 
+/// Where a lying cylinder is nearest to an edge that its line crosses, seen along n.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bulging {
+    /// Cosine between n and the common perpendicular of edge and line.
+    pub(crate) upright: f64,
+    /// How far towards the nearest place the edge goes on, 0 to 1.
+    pub(crate) along_edge: f64,
+    /// How far towards the nearest place the line goes on, 0 to 1.
+    pub(crate) along_line: f64,
+}
+
 /// A corner of the overlap, with the heights of both patches.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Meeting {
@@ -64,8 +75,8 @@ pub(crate) struct Meeting {
     pub(crate) fa: u32,
     /// Feature of B.
     pub(crate) fb: u32,
-    /// Where an edge crosses a lone line: cosine between n and their common perpendicular; 1 elsewhere.
-    pub(crate) upright: f64,
+    /// Where an edge crosses the line of a lying cylinder or capsule.
+    pub(crate) bulge: Option<Bulging>,
 }
 
 impl Meeting {
@@ -90,6 +101,8 @@ pub(crate) struct Overlap {
     axes: (Vec3, Vec3),
     n: Vec3,
     tol: f64,
+    /// Radius of the lying cylinder or capsule, m; zero if there is none.
+    pub(crate) round: f64,
     /// What was found.
     pub(crate) found: Vec<Meeting>,
 }
@@ -124,7 +137,7 @@ impl Overlap {
                 && let Some(height_a) = self.a.height(f.x, f.y)
             {
                 let (fa, fb) = (self.a.whole, f.vertex);
-                self.push(Meeting { x: f.x, y: f.y, height_a, height_b: f.h, fa, fb, upright: 1.0 });
+                self.push(Meeting { x: f.x, y: f.y, height_a, height_b: f.h, fa, fb, bulge: None });
             }
         }
     }
@@ -136,7 +149,7 @@ impl Overlap {
                 && let Some(height_b) = self.b.height(f.x, f.y)
             {
                 let (fa, fb) = (f.vertex, self.b.whole);
-                self.push(Meeting { x: f.x, y: f.y, height_a: f.h, height_b, fa, fb, upright: 1.0 });
+                self.push(Meeting { x: f.x, y: f.y, height_a: f.h, height_b, fa, fb, bulge: None });
             }
         }
     }
@@ -147,13 +160,13 @@ impl Overlap {
             (None, Some(disc)) => return self.find_rim_crossings(&disc, false),
             _ => {}
         }
-        let lone = self.a.flats.len() == 2 || self.b.flats.len() == 2;
+        let lone = self.round > 0.0 && (self.a.flats.len() == 2) != (self.b.flats.len() == 2);
         for i in 0..self.a.edges() {
             for j in 0..self.b.edges() {
                 let (e, f) = (&self.a.flats[i], &self.b.flats[j]);
                 if let Some(m) = cross(e, f, self.tol) {
-                    let upright = if lone { upright(&e.along(), &f.along()) } else { 1.0 };
-                    self.push(Meeting { upright, ..m });
+                    let bulge = if lone { self.bulge_at(&m, (e, f)) } else { None };
+                    self.push(Meeting { bulge, ..m });
                 }
             }
         }
@@ -162,7 +175,7 @@ impl Overlap {
     /// Where the edges of one side cross the rim of the other, which is A's if `on_a`.
     fn find_rim_crossings(&mut self, disc: &FlatDisc, on_a: bool) {
         let edges = if on_a { self.b.edges() } else { self.a.edges() };
-        let lone = edges == 1;
+        let lone = edges == 1 && self.round > 0.0;
         for i in 0..edges {
             let (edge, side) = if on_a { (self.b.flats[i], &self.a) } else { (self.a.flats[i], &self.b) };
             let at = |s: f64| (edge.x + s * edge.dx, edge.y + s * edge.dy, edge.h + edge.rise * s);
@@ -171,18 +184,27 @@ impl Overlap {
             let found = [(hits[0], disc.rim), (hits[1], disc.rim + 1)].map(|(hit, rim)| {
                 let (x, y, on_edge) = at(hit?);
                 let on_disc = side.height(x, y)?;
-                let upright = match side.slope {
-                    Some(slope) if lone => upright(&edge.along(), &disc.along(x, y, slope)),
-                    _ => 1.0,
-                };
+                let bulge = side.slope.filter(|_| lone).map(|slope| {
+                    let rim = (disc.along(x, y, slope), [f64::INFINITY; 2]);
+                    let (along, ends) = edge.seen_from(x, y);
+                    calc_bulge((&rim.0, rim.1), (&along, ends), if on_a { self.round } else { -self.round })
+                });
                 Some(if on_a {
-                    Meeting { x, y, height_a: on_disc, height_b: on_edge, fa: rim, fb: edge.edge, upright }
+                    Meeting { x, y, height_a: on_disc, height_b: on_edge, fa: rim, fb: edge.edge, bulge }
                 } else {
-                    Meeting { x, y, height_a: on_edge, height_b: on_disc, fa: edge.edge, fb: rim, upright }
+                    Meeting { x, y, height_a: on_edge, height_b: on_disc, fa: edge.edge, fb: rim, bulge }
                 })
             });
             found.into_iter().flatten().for_each(|m| self.push(m));
         }
+    }
+
+    /// The bulge of the lying cylinder where its line crosses an edge.
+    fn bulge_at(&self, m: &Meeting, (e, f): (&Flat, &Flat)) -> Option<Bulging> {
+        let line_is_a = self.a.flats.len() == 2;
+        let (edge, line) = if line_is_a { (f, e) } else { (e, f) };
+        let ((e, ends_e), (f, ends_f)) = (edge.seen_from(m.x, m.y), line.seen_from(m.x, m.y));
+        Some(calc_bulge((&e, ends_e), (&f, ends_f), if line_is_a { -self.round } else { self.round }))
     }
 
     fn is_line(&self) -> bool {
@@ -197,14 +219,14 @@ impl Overlap {
             let s = (end.x - e.x) * e.dx + (end.y - e.y) * e.dy;
             if s >= -self.tol && s <= e.len + self.tol {
                 let (height_a, height_b) = (e.h + e.rise * s, end.h);
-                self.push(Meeting { x: end.x, y: end.y, height_a, height_b, fa: e.edge, fb: end.vertex, upright: 1.0 });
+                self.push(Meeting { x: end.x, y: end.y, height_a, height_b, fa: e.edge, fb: end.vertex, bulge: None });
             }
         }
         for end in [self.a.flats[0], self.a.flats[1]] {
             let s = (end.x - f.x) * f.dx + (end.y - f.y) * f.dy;
             if s >= -self.tol && s <= f.len + self.tol {
                 let (height_a, height_b) = (end.h, f.h + f.rise * s);
-                self.push(Meeting { x: end.x, y: end.y, height_a, height_b, fa: end.vertex, fb: f.edge, upright: 1.0 });
+                self.push(Meeting { x: end.x, y: end.y, height_a, height_b, fa: end.vertex, fb: f.edge, bulge: None });
             }
         }
     }
@@ -312,14 +334,15 @@ fn flatten_disc(disc: &Disc, n: &Vec3, axes: &(Vec3, Vec3), (f, (sx, sy)): (&Fla
 }
 
 impl Flat {
-    /// Along the edge, per length across n: x, y and height.
-    fn along(&self) -> Vec3 {
-        Vec3::new(self.dx, self.dy, self.rise)
+    /// Direction along the edge, per length across n (x, y, rise), and how far its ends are from (x, y), back and on.
+    fn seen_from(&self, x: f64, y: f64) -> (Vec3, [f64; 2]) {
+        let along = (x - self.x) * self.dx + (y - self.y) * self.dy;
+        (Vec3::new(self.dx, self.dy, self.rise), [along, self.len - along])
     }
 }
 
 impl FlatDisc {
-    /// Along the rim at (x, y), as [`Flat::along`].
+    /// Along the rim at (x, y), as [`Flat::seen_from`].
     fn along(&self, x: f64, y: f64, slope: (f64, f64)) -> Vec3 {
         let [u, v] = self.coordinates(x, y);
         let out = |per: &[f64; 2]| u * per[0] + v * per[1];
@@ -349,17 +372,26 @@ impl FlatDisc {
     }
 }
 
-/// Cosine between n and the common perpendicular u of two edges that cross.
+/// How a lying cylinder of radius |`round`| bulges over an edge beside its line (`round` < 0: the line is A's).
 ///
-/// Of a cylinder about one of them the place nearest to the other is tan(n, u) / sin(e, f) radii from the crossing. Where
-/// that is more than one radius the crossing stops standing for it, and from two radii on the answer is 1.
-fn upright(e: &Vec3, f: &Vec3) -> f64 {
-    let across = e.cross(f);
-    let sine = across.z.abs();
-    let cosine = across.z.abs() / across.norm();
-    let away = across.xy().norm() / (across.z.abs() * sine);
-    let x = (2.0 - away).clamp(0.0, 1.0);
-    1.0 - (1.0 - cosine) * x * x * (3.0 - 2.0 * x)
+/// Directions are per length across n (x, y, rise), u: common perpendicular, from A to B. Seen along n the nearest places
+/// are r u apart, at X along the edge e and Y along the line f from the crossing: Y f − X e = r u (edge of A; of B: − r u).
+/// Where an end comes before them (`ends`: from the crossing back and on, m) the surface falls short as a parabola does;
+/// where X is more than one radius the crossing stops to stand for the place, up to two.
+fn calc_bulge((edge, ends_e): (&Vec3, [f64; 2]), (line, ends_f): (&Vec3, [f64; 2]), round: f64) -> Bulging {
+    let across = edge.cross(line);
+    let sine = across.z;
+    let u = across / (across.norm() * sine.signum());
+    let flat_cross = |p: &Vec3, q: &Vec3| p.x * q.y - p.y * q.x;
+    let (x, y) = (round * flat_cross(line, &u) / sine, round * flat_cross(edge, &u) / sine);
+    let reached = |d: f64, ends: [f64; 2]| {
+        let room = if d > 0.0 { ends[1] } else { ends[0] };
+        let short = 1.0 - if d == 0.0 { 1.0 } else { (room.max(0.0) / d.abs()).min(1.0) };
+        1.0 - short * short
+    };
+    let near = (2.0 - (x / round).abs()).clamp(0.0, 1.0);
+    let along_edge = reached(x, ends_e) * near * near * (3.0 - 2.0 * near);
+    Bulging { upright: u.z, along_edge, along_line: reached(y, ends_f) }
 }
 
 /// The crossing of two edges, if they cross within their lengths.
@@ -379,5 +411,5 @@ fn cross(e: &Flat, f: &Flat, tol: f64) -> Option<Meeting> {
     }
     let (s, t) = (s / size, t / size);
     let (x, y) = (e.x + s * e.dx, e.y + s * e.dy);
-    Some(Meeting { x, y, height_a: e.h + e.rise * s, height_b: f.h + f.rise * t, fa: e.edge, fb: f.edge, upright: 1.0 })
+    Some(Meeting { x, y, height_a: e.h + e.rise * s, height_b: f.h + f.rise * t, fa: e.edge, fb: f.edge, bulge: None })
 }

@@ -9,7 +9,7 @@
 use crate::analytic::Raw;
 use crate::axes::{Axis, Couple, FLAT};
 use crate::convex::{Convex, Core};
-use crate::overlap::Overlap;
+use crate::overlap::{Bulging, Overlap};
 use crate::patch::Patch;
 use spatial::{Frame, Vec3};
 
@@ -19,6 +19,8 @@ const SAME: f64 = 1e-6;
 /// How far above the lowest place of a piece its lowest contact point must be for the piece to be beside the face, in
 /// extents of the smaller shape.
 const BESIDE: f64 = 1e-4;
+/// Square of the extent of a face's points, in depths, below which edges are asked.
+const NARROW: f64 = 100.0;
 
 /// Scratch of a pair.
 #[derive(Debug, Default)]
@@ -45,7 +47,7 @@ impl PrimitiveBuffer {
         let Some(axes) = couple.find_axis(margin + radii) else { return true };
         let start = out.len();
         if self.add_along(&couple, &axes.best, (frame_a, margin), out) {
-            self.prefer_rim(&couple, &axes.best, (frame_a, margin), (start, out));
+            self.prefer_edges(&couple, &axes.best, (frame_a, margin), (start, out));
             return true;
         }
         // Along a face that the other does not lie over: apart by more than the margin, or nearest in another direction.
@@ -61,24 +63,30 @@ impl PrimitiveBuffer {
         }
     }
 
-    /// Where a face's points are all above the lowest place of the other (it is beside the face), a rim that leans on an
-    /// edge takes their place, if its normal is not nearly the face's.
-    fn prefer_rim(
+    /// Where a face is the wrong choice, the edges that it was preferred to take its place, if their normal is not nearly its:
+    /// where its points are all above the lowest place of the other (it is beside the face, a rim leans on an edge), and
+    /// where they are close together beside their depth (two corners that overlap by a hair).
+    fn prefer_edges(
         &mut self,
         couple: &Couple<'_>,
         axis: &Axis,
         (frame_a, margin): (&Frame, f64),
         (start, out): (usize, &mut Vec<Raw>),
     ) {
-        let radii = couple.a.radius + couple.b.radius;
-        let found = out[start..].iter().map(|p| p.gap).fold(f64::INFINITY, f64::min);
-        if !axis.face || found + radii <= axis.gap + BESIDE * couple.scale {
+        if !axis.face {
             return;
         }
-        let better = |rim: &Axis| rim.gap > axis.gap + BESIDE * couple.scale && rim.normal.dot(&axis.normal) < FLAT;
-        if let Some(rim) = couple.find_rim_axis().filter(better) {
+        let found = &out[start..];
+        let least = axis.gap + BESIDE * couple.scale;
+        let deepest = found.iter().map(|p| p.gap).fold(f64::INFINITY, f64::min);
+        let width = found.iter().map(|p| (p.point_a - found[0].point_a).norm_squared()).fold(0.0, f64::max);
+        let beside = deepest + couple.a.radius + couple.b.radius > least;
+        let rim = if beside { couple.find_rim_axis() } else { None };
+        let edges = if deepest < 0.0 && width < NARROW * deepest * deepest { couple.find_edges() } else { None };
+        let better = |other: &Axis| other.gap > least && other.normal.dot(&axis.normal) < FLAT;
+        if let Some(other) = rim.or(edges).filter(better) {
             let before = out.len();
-            if self.add_along(couple, &rim, (frame_a, margin), out) {
+            if self.add_along(couple, &other, (frame_a, margin), out) {
                 out.drain(start..before);
             }
         }
@@ -92,14 +100,15 @@ impl PrimitiveBuffer {
         (frame_a, margin): (&Frame, f64),
         out: &mut Vec<Raw>,
     ) -> bool {
+        let normal_b = couple.frame_ab.rot.tr_mul(&axis.normal);
+        let (bulge_a, bulge_b) = (couple.a.bulge(&axis.normal), couple.b.bulge(&normal_b));
+        self.overlap.round = if axis.face { bulge_a.radius + bulge_b.radius } else { 0.0 };
         self.overlap_along(couple, axis);
         let start = out.len();
         let normal = frame_a.rot * axis.normal;
         let radius = couple.a.radius;
-        let normal_b = couple.frame_ab.rot.tr_mul(&axis.normal);
-        let (bulge_a, bulge_b) = (couple.a.bulge(&axis.normal), couple.b.bulge(&normal_b));
         for meeting in &self.overlap.found {
-            let more = |bulge: &Bulge| if meeting.upright < 1.0 { bulge.of(meeting.upright) } else { 0.0 };
+            let more = |bulge: &Bulge| meeting.bulge.map_or(0.0, |b| bulge.of(&b));
             let radius = radius + more(&bulge_a);
             let gap = meeting.gap() - radius - couple.b.radius - more(&bulge_b);
             if gap < margin {
@@ -147,28 +156,33 @@ impl PrimitiveBuffer {
 
 /// How a lying cylinder or capsule bulges beside the line that its patch is.
 ///
-/// Over an edge, along n, the axis is h high and the surface r / (n·u) lower at its lowest, u: common perpendicular of
-/// edge and axis. The patch is r / cos φ below the axis (a cylinder's line; φ: lean) or r (a capsule's axis, less r).
+/// Over an edge, along n, its axis is h high and the surface is r / (n·u) lower at its lowest, u: common perpendicular of
+/// edge and axis. Along n straight below the axis it is r / cos φ lower, φ: lean; the patch is there (a cylinder's line), or
+/// on the axis, less r (a capsule's).
 #[derive(Clone, Copy, Default)]
 struct Bulge {
     radius: f64,
-    /// What the patch has already of r / (n·u), m.
+    /// r / cos φ, m.
+    below: f64,
+    /// What of it the patch or the rounding radius counts already, m.
     counted: f64,
 }
 
 impl Bulge {
     /// How much lower than the patch says the surface is over an edge, m. Beyond [`FLAT`] edges count for themselves.
-    fn of(self, upright: f64) -> f64 {
-        self.radius / upright.max(FLAT) - self.counted
+    fn of(&self, at: &Bulging) -> f64 {
+        let lowest = (self.radius / at.upright.max(FLAT)).max(self.below);
+        at.along_line * (self.below - self.counted + at.along_edge * (lowest - self.below))
     }
 }
 
 impl Convex {
     fn bulge(&self, n: &Vec3) -> Bulge {
+        let below = |radius: f64| radius / n.x.hypot(n.y).max(FLAT);
         match &self.core {
             Core::Cuboid { .. } => Bulge::default(),
-            Core::Segment { .. } => Bulge { radius: self.radius, counted: self.radius },
-            Core::Cylinder(c) => Bulge { radius: c.radius, counted: c.radius / n.x.hypot(n.y).max(FLAT) },
+            Core::Segment { .. } => Bulge { radius: self.radius, below: below(self.radius), counted: self.radius },
+            Core::Cylinder(c) => Bulge { radius: c.radius, below: below(c.radius), counted: below(c.radius) },
         }
     }
 }

@@ -4,8 +4,8 @@
 
 use crate::convex::ALONG;
 use crate::patch::Patch;
-use parry3d_f64::shape::ConvexPolyhedron;
 use crate::scene::from_parry;
+use parry3d_f64::shape::ConvexPolyhedron;
 use spatial::Vec3;
 
 /// A face: its outward normal and its range in [`Polytope::ring`].

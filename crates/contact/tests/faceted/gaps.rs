@@ -1,9 +1,8 @@
 //! Closed forms: number of points, gap and normal of every pair of kinds, and what exchanging A and B does.
 
-
+use crate::support::*;
 use spatial::{Frame, Vec3};
 use std::f64::consts::FRAC_PI_2;
-use crate::support::*;
 
 const DEPTH: f64 = 1e-5;
 

@@ -1,9 +1,8 @@
 //! Meshes: turned inside out, finely tessellated, open and thin.
 
-
+use crate::support::*;
 use contact::Shape;
 use spatial::{Frame, Vec3};
-use crate::support::*;
 
 fn reversed(mesh: &Shape) -> Shape {
     let Shape::TriMesh { vertices, triangles } = mesh else { panic!("a mesh") };

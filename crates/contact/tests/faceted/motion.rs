@@ -1,11 +1,10 @@
 //! Points as poses move: identity, continuity, purity, order of pairs.
 
-
+use crate::support::*;
 use contact::{ContactPoint, Detector, Scene, Shape};
 use proptest::prelude::*;
 use spatial::{Frame, Vec3};
 use std::f64::consts::FRAC_PI_2;
-use crate::support::*;
 
 fn features(points: &[ContactPoint]) -> Vec<u64> {
     points.iter().map(|p| p.feature).collect()

@@ -1,13 +1,12 @@
 //! The deepest point against parry's own distance and depth, random poses, shallow contact.
 
-
+use crate::support::*;
 use contact::Shape;
 use parry3d_f64::math::{Pose, Rotation, Vector};
 use parry3d_f64::query;
 use parry3d_f64::shape::SharedShape;
 use proptest::prelude::*;
 use spatial::{Frame, Vec3, exp_rotation};
-use crate::support::*;
 
 fn kinds() -> Vec<Shape> {
     vec![
@@ -85,7 +84,10 @@ proptest! {
                 prop_assert!(!found.is_empty(), "kinds {i} and {j}: none against {dist}");
                 let gap = deepest(&found).gap;
                 // Faces win over edges within 8°: some per cent of the depth near corners. parry: 1e-7 on curved shapes.
-                let tol = 0.03 * dist.abs() + 5e-6;
+                // A round side that leans by up to 10° on a face's edge is measured along the face's normal: within 1 % of its
+                // radius where the edge ends or runs nearly along it, before the edge takes over.
+                let bulge = if i >= 4 || j >= 4 { 4e-4 } else { 0.0 };
+                let tol = 0.03 * dist.abs() + 5e-6 + bulge;
                 prop_assert!((gap - dist).abs() < tol, "kinds {i} and {j}: {gap} against {dist}, {found:?}");
             }
         }
