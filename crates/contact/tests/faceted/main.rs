@@ -6,4 +6,5 @@ mod gaps;
 mod mesh;
 mod motion;
 mod parry;
+mod smooth;
 mod support;

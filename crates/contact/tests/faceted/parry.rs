@@ -87,7 +87,9 @@ proptest! {
                 // A round side that leans by up to 10° on a face's edge is measured along the face's normal: within 1 % of its
                 // radius where the edge ends or runs nearly along it, before the edge takes over.
                 let bulge = if i >= 4 || j >= 4 { 4e-4 } else { 0.0 };
-                let tol = 0.03 * dist.abs() + 5e-6 + bulge;
+                // Between boxes faces win over edges by a thousandth of the smaller extent.
+                let lead = if i == 1 && j == 1 { 5e-5 } else { 0.0 };
+                let tol = 0.03 * dist.abs() + 5e-6 + bulge + lead;
                 prop_assert!((gap - dist).abs() < tol, "kinds {i} and {j}: {gap} against {dist}, {found:?}");
             }
         }
