@@ -8,7 +8,7 @@ use crate::convex::{Convex, Core};
 use crate::faceted::FacetBuffer;
 use crate::manifold::{add_nearest, mix};
 use crate::primitive::{PrimitiveBuffer, convex_ball};
-use crate::reduce::reduce;
+use crate::reduce::Reduction;
 use crate::scene::{ContactPoint, NONE, Part, Scene, Solid, Twin};
 use spatial::{Frame, Vec3};
 
@@ -21,7 +21,7 @@ pub struct Detector {
     order: Vec<u32>,
     candidates: Vec<u32>,
     raw: Vec<Raw>,
-    nearest: Vec<f64>,
+    reduction: Reduction,
     primitives: PrimitiveBuffer,
     facets: FacetBuffer,
     narrow: u64,
@@ -49,7 +49,7 @@ impl Detector {
             order: (0..n as u32).collect(),
             candidates: Vec::with_capacity(scene.pairs().len()),
             raw: Vec::with_capacity(64),
-            nearest: Vec::new(),
+            reduction: Reduction::default(),
             primitives: PrimitiveBuffer::default(),
             facets: FacetBuffer::default(),
             narrow: 0,
@@ -76,16 +76,10 @@ impl Detector {
             let margin = reach[body_a] + reach[body_b] + SKIN;
             self.narrow += 1;
             self.find(&scene.parts[a], &poses[body_a], &scene.parts[b], &poses[body_b], margin);
-            reduce(&mut self.raw, &mut self.nearest);
             self.raw.sort_unstable_by_key(|p| p.feature);
-            out.extend(self.raw.iter().map(|p| ContactPoint {
-                pair,
-                feature: p.feature,
-                point_a_w: p.point_a,
-                point_b_w: p.point_a + p.gap * p.normal,
-                normal_w: p.normal,
-                gap: p.gap,
-            }));
+            self.reduction.reduce(&mut self.raw);
+            let reduction = &self.reduction;
+            out.extend(self.raw.iter().enumerate().map(|(i, p)| p.in_pair(pair, reduction.weight_of(i))));
         }
     }
 

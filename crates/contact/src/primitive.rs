@@ -73,10 +73,12 @@ impl PrimitiveBuffer {
         (frame_a, margin): (&Frame, f64),
         (start, out): (usize, &mut Vec<Raw>),
     ) {
-        if !axis.face {
+        let found = &out[start..];
+        // Four points or more of boxes are a face's.
+        let sharp = !couple.a.is_round() && !couple.b.is_round();
+        if !axis.face || (sharp && found.len() >= 4) {
             return;
         }
-        let found = &out[start..];
         let least = axis.gap + BESIDE * couple.scale;
         let deepest = found.iter().map(|p| p.gap).fold(f64::INFINITY, f64::min);
         let width = found.iter().map(|p| (p.point_a - found[0].point_a).norm_squared()).fold(0.0, f64::max);

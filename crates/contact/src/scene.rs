@@ -23,6 +23,8 @@ pub struct ContactPoint {
     pub normal_w: Vec3,
     /// Distance along the normal, m; negative: penetration.
     pub gap: f64,
+    /// Share of the pair's law (stiffness, damping, adhesion) that acts here: 1, but for the samples of a bed.
+    pub weight: f64,
 }
 
 /// A convex piece, or a surface, as the detector asks it.
