@@ -11,8 +11,9 @@
 //! Two faces that lie on each other are equally good axes, and round-off would choose. So:
 //!   * nearly parallel faces of A and B are *both* used: the normal is their weighted mean, the weights going smoothly from
 //!     one to the other as the difference of their separations passes ± [`BLEND`] of the smaller shape's extent;
-//!   * an edge pair whose normal lies within [`FLAT`] of a face's normal is passed over for the face: the overlap of the
-//!     faces has the point where those edges cross among its corners. Where the faces of both are nearly parallel, edges are
+//!   * an edge pair whose normal lies within [`FLATTER`] of a face's normal is passed over for the face: the overlap of the
+//!     faces has the point where those edges cross among its corners. From there to [`FLAT`] the normal turns from the
+//!     face's to the edges', so that the force does not jump where edges take over and the other corners are left. Where the faces of both are nearly parallel, edges are
 //!     not asked at all: their perpendiculars are all nearly normals of faces;
 //!   * a cylinder that lies on a face meets it with a line, two points, for as long as the line is over the face: a bar that
 //!     overhangs a pad and leans by a tenth of a milliradian is farthest apart along the pad's edge, but its other end has
@@ -24,6 +25,8 @@ use spatial::{Frame, Vec3};
 
 /// Cosine of the angle (10°) between two normals below which they count as the same side.
 pub(crate) const FLAT: f64 = 0.984_807_753_012_208;
+/// Cosine of the angle (5°) from which an edge pair's normal is mixed in.
+const FLATTER: f64 = 0.996_194_698_091_745_5;
 /// Difference of separations, in extents of the smaller shape, over which the normal goes from one face's to the other's.
 const BLEND: f64 = 1e-2;
 /// Axial part of a direction below which a cylinder that meets it lies on its side: the sine of the angle of [`FLAT`].
@@ -49,6 +52,22 @@ pub(crate) struct Axis {
 /// Whether an axis is nearly the normal of a face.
 fn is_flat_for(axis: &Axis, face: &Axis) -> bool {
     face.face && axis.normal.dot(&face.normal) > FLAT
+}
+
+/// The axis between a face and edges that beat it: the face's within [`FLATTER`] of the normal of either body's face, the
+/// edges' beyond [`FLAT`], and turning from one to the other between.
+fn hand_over(best: &Axis, edges: &Axis, faces: [&Axis; 2]) -> Axis {
+    let cosine = |face: &Axis| if face.face { edges.normal.dot(&face.normal) } else { -1.0 };
+    let x = (FLATTER - cosine(faces[0]).max(cosine(faces[1]))) / (FLATTER - FLAT);
+    if x >= 1.0 || !best.face {
+        return *edges;
+    }
+    if x <= 0.0 {
+        return *best;
+    }
+    let weight = x * x * (3.0 - 2.0 * x);
+    let normal = (weight * edges.normal + (1.0 - weight) * best.normal).normalize();
+    Axis { normal, gap: best.gap, face: true }
 }
 
 /// The axis to use, and the one to use where the patches along it do not overlap.
@@ -91,9 +110,8 @@ impl Couple<'_> {
             return None;
         }
         let mut best = self.blend(&face_a, &face_b);
-        let is_flat = |face: &Axis| is_flat_for(&edges, face);
-        if edges.gap > best.gap + PREFER_FACE * self.scale && !is_flat(&face_a) && !is_flat(&face_b) {
-            best = edges;
+        if edges.gap > best.gap + PREFER_FACE * self.scale {
+            best = hand_over(&best, &edges, [&face_a, &face_b]);
         }
         // Edges that were passed over for a face are still farther apart than a point must be to win.
         if points.gap <= best.gap.max(edges.gap) + PREFER_FIRST * self.scale {

@@ -14,6 +14,7 @@ use super::mesh::{Bend, Mesh};
 use super::narrow::{Axis, Couple, Kind, Narrow};
 use super::piece::{Core, Piece};
 use super::triangle::Triangle;
+use crate::convex;
 use crate::scene::to_parry;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::partitioning::{Bvh, BvhNode};
@@ -79,6 +80,9 @@ impl OnMesh<'_> {
             return;
         }
         let face = couple.separation_of_face(&outward, &triangle.p[0]);
+        if face - self.piece.radius > self.margin || self.is_beside(triangle) {
+            return;
+        }
         if self.lies_on(&outward, face) {
             narrow.add_overlap(&couple, &Axis { n: outward, gap: face, kind: Kind::Face });
             return;
@@ -92,6 +96,14 @@ impl OnMesh<'_> {
             }
             Verdict::Face(_) => {}
         }
+    }
+
+    /// Whether the triangle is apart from the piece along one of a box's axes: cheaper than asking for the axis.
+    fn is_beside(&self, triangle: &Triangle) -> bool {
+        let Core::Primitive(convex::Core::Cuboid { half }) = &self.piece.core else { return false };
+        let [p, q, r] = triangle.p.map(|p| self.ab.inverse_point(&p));
+        let (low, high) = (p.inf(&q).inf(&r), p.sup(&q).sup(&r));
+        (0..3).any(|k| low[k] > half[k] + self.margin || high[k] < -half[k] - self.margin)
     }
 
     /// Whether the piece, if it is a triangle of a closed mesh, does not turn its back on `outward`.

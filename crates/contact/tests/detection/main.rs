@@ -6,6 +6,7 @@ mod bad_input;
 mod bars;
 mod broad_phase;
 mod closed_form;
+mod handover;
 mod identity;
 mod properties;
 mod support;

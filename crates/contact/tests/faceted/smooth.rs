@@ -142,3 +142,52 @@ fn turning_the_whole_world_changes_no_gap() {
         }
     }
 }
+
+#[test]
+fn many_sided_plate_keeps_its_force_at_sixteen_points_and_their_names() {
+    // A closed prism of 40 sides, radius 0.1 m, on a plate: 40 corners, of which 16 stay and stand for all.
+    let sides = 40_u32;
+    let rim = |z: f64| {
+        (0..sides).map(move |i| {
+            let angle = std::f64::consts::TAU * f64::from(i) / f64::from(sides);
+            v(0.1 * angle.cos(), 0.07 * angle.sin(), z)
+        })
+    };
+    let vertices: Vec<Vec3> = rim(-0.01).chain(rim(0.01)).collect();
+    for shape in [
+        Shape::ConvexHull { vertices: vertices.clone() },
+        Shape::TriMesh {
+            vertices,
+            triangles: (0..sides)
+                .flat_map(|i| {
+                    let (j, n) = ((i + 1) % sides, sides);
+                    let ends = [[0, j, i], [n, n + i, n + j]].into_iter().filter(|t| t[0] != t[1] && t[0] != t[2]);
+                    [[i, j, n + j], [i, n + j, n + i]].into_iter().chain(ends).collect::<Vec<_>>()
+                })
+                .collect(),
+        },
+    ] {
+        for ground in [plate(1.0, 9), cuboid(1.0, 1.0, 0.1), Shape::HalfSpace] {
+            let top = if matches!(ground, Shape::Cuboid { .. }) { 0.1 } else { 0.0 };
+            let mut bench = Bench::new(ground.clone(), shape.clone());
+            let mut first: Option<Vec<u64>> = None;
+            for i in 0..300 {
+                let t = f64::from(i);
+                let lean = v(2e-6 * (0.3 * t).sin(), 2e-6 * (0.5 * t).cos(), 0.0);
+                let pose = &posed(v(-0.5 + 3e-3 * t, 1e-3 * t, top + 0.01 - 1e-5), lean)
+                    * &posed(Vec3::zeros(), v(0.0, 0.0, 2e-3 * t));
+                let found = bench.ask(Frame::identity(), pose);
+                assert_eq!(found.len(), 16, "{ground:?}");
+                let share: f64 = found.iter().map(|p| p.weight).sum();
+                let force: f64 = found.iter().map(|p| p.weight * -p.gap).sum();
+                let centre: Vec3 = found.iter().map(|p| p.weight * -p.gap * p.point_b_w).sum::<Vec3>() / force;
+                assert!((share - 40.0).abs() < 1e-9, "{share}");
+                // All 40 have the mean gap of the level plate, but for its half height × lean² / 2 each; the lean moves the centre by lean × (0.1 m)² / 2 / 1e-5 m.
+                assert!((force - 40.0 * 1e-5).abs() < 4e-12, "step {i}: {force}");
+                assert!((centre - pose.pos).xy().norm() < 2.0 * 2e-6 * 0.005 / 1e-5, "step {i}: {centre:?}");
+                let names: Vec<u64> = found.iter().map(|p| p.feature).collect();
+                assert_eq!(&names, first.get_or_insert(names.clone()), "{ground:?}, step {i}");
+            }
+        }
+    }
+}
