@@ -156,6 +156,7 @@ fn calc_sums([x, y]: &[f64; 2]) -> Sums {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     /// Reads off force, first moments, and spin moment of springs under a plane pressure, at weights.
     fn effects(points: &[(Raw, f64)], slope: [f64; 2], about: &Vec3) -> [f64; 4] {
@@ -182,12 +183,8 @@ mod tests {
     /// Outlines with many corners: a regular one, an ellipse, a rack of teeth, a filled grid.
     fn faces() -> Vec<Vec<Raw>> {
         vec![
-            outline(48, |i| {
-                (0.1 * (i / 48.0 * 6.283_185_307_179_586).cos(), 0.1 * (i / 48.0 * 6.283_185_307_179_586).sin())
-            }),
-            outline(37, |i| {
-                (0.2 * (i / 37.0 * 6.283_185_307_179_586).cos() + 0.5, 0.07 * (i / 37.0 * 6.283_185_307_179_586).sin())
-            }),
+            outline(48, |i| (0.1 * (i / 48.0 * TAU).cos(), 0.1 * (i / 48.0 * TAU).sin())),
+            outline(37, |i| (0.2 * (i / 37.0 * TAU).cos() + 0.5, 0.07 * (i / 37.0 * TAU).sin())),
             outline(40, |i| (0.01 * i, if (i as u32) % 4 < 2 { 0.02 } else { -0.03 })),
             outline(81, |i| (0.02 * (i % 9.0), 0.03 * (i / 9.0).floor())),
         ]

@@ -37,7 +37,7 @@ fn force_turns_continuously_from_a_face_to_crossed_edges() {
             last = Some(force);
         }
     }
-    // Without mixing normals: 17 %, the sine of the 10° at which edges take over.
-    println!("largest change in a step of 50 µrad: {worst:?}");
+    // Measured 1.8 %, at 2.7 mrad, where the far corners leave. Without mixing normals: 17 %, the sine of the 10° at which
+    // edges take over.
     assert!(worst.0 < 0.02, "the force jumps by {} of itself at yaw {} and lean {}", worst.0, worst.1, worst.2);
 }
