@@ -4,6 +4,7 @@
 //! stateless, so the points do not depend on what was asked before.
 
 use crate::analytic::{Raw, ball_ball, plane_ball, plane_cuboid, swapped};
+use crate::bed_points::{BedBuffer, is_bed};
 use crate::convex::{Convex, Core};
 use crate::manifold::{ManifoldBuffer, mix};
 use crate::primitive::{PrimitiveBuffer, convex_ball};
@@ -24,6 +25,7 @@ pub struct Detector {
     nearest: Vec<f64>,
     primitives: PrimitiveBuffer,
     manifolds: ManifoldBuffer,
+    beds: BedBuffer,
     narrow: u64,
 }
 
@@ -55,6 +57,7 @@ impl Detector {
             nearest: Vec::new(),
             primitives: PrimitiveBuffer::default(),
             manifolds: ManifoldBuffer::default(),
+            beds: BedBuffer::default(),
             narrow: 0,
         }
     }
@@ -81,15 +84,27 @@ impl Detector {
             self.find(&scene.parts[a], &poses[body_a], &scene.parts[b], &poses[body_b], margin);
             reduce(&mut self.raw, &mut self.nearest);
             self.raw.sort_unstable_by_key(|p| p.feature);
-            out.extend(self.raw.iter().map(|p| ContactPoint {
-                pair,
-                feature: p.feature,
-                point_a_w: p.point_a,
-                point_b_w: p.point_a + p.gap * p.normal,
-                normal_w: p.normal,
-                gap: p.gap,
-            }));
+            out.extend(self.raw.iter().map(|p| p.in_pair(pair, 1.0)));
+            let own = (&scene.parts[a][..], &poses[body_a]);
+            self.add_beds(own, (&scene.parts[b], &poses[body_b]), (pair, margin), out);
         }
+    }
+
+    /// Adds the points of beds to those of a pair, in the order of features.
+    fn add_beds(
+        &mut self,
+        a: (&[Part], &Frame),
+        b: (&[Part], &Frame),
+        (pair, margin): (u32, f64),
+        out: &mut Vec<ContactPoint>,
+    ) {
+        self.beds.find(a, b, margin);
+        if self.beds.found.is_empty() {
+            return;
+        }
+        let start = out.len() - self.raw.len();
+        out.extend(self.beds.found.iter().map(|(p, weight)| p.in_pair(pair, *weight)));
+        out[start..].sort_unstable_by_key(|p| p.feature);
     }
 
     fn update_boxes(&mut self, scene: &Scene, poses: &[Frame], reach: &[f64]) {
@@ -138,6 +153,9 @@ impl Detector {
         for (i, a) in parts_a.iter().enumerate() {
             let frame_a = pose_a * &a.frame_bp;
             for (j, b) in parts_b.iter().enumerate() {
+                if is_bed(a) || is_bed(b) {
+                    continue;
+                }
                 let frame_b = pose_b * &b.frame_bp;
                 let start = self.raw.len();
                 self.find_parts((a, &frame_a), (b, &frame_b), margin);
@@ -203,7 +221,7 @@ fn ball_of(solid: &Solid) -> Ball {
 
 fn twin_of<'a>(solid: &'a Solid, ball: &'a Ball) -> (&'a dyn Shape, Mat3) {
     match solid {
-        Solid::Ball(_) => (ball, Mat3::identity()),
+        Solid::Ball(_) | Solid::Bed(_) => (ball, Mat3::identity()),
         Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Other(twin) => (&*twin.shape, twin.turn),
     }
 }

@@ -21,6 +21,11 @@
 //! ordinal along A tells them apart. Where features say nothing (a ball that rolls) it is constant, and the nearest
 //! position decides.
 //!
+//! # Distributed contact
+//!
+//! A [`Bed`] spreads contact over a face by samples with areas; each of its points has a [`ContactPoint::weight`] that scales
+//! the pair's law. Its points are not reduced, and known by their sample.
+//!
 //! # Limits
 //!
 //! Meshes are surfaces: a body that is wholly inside one touches nothing. Penetration is meant to be small beside the
@@ -29,8 +34,14 @@
 
 mod analytic;
 mod axes;
+mod bed;
+mod bed_faces;
+mod bed_points;
 mod convex;
 mod cylinder;
+mod decompose;
+mod decompose_cell;
+mod decompose_measure;
 mod detector;
 mod error;
 mod glob;
@@ -44,6 +55,8 @@ mod rim;
 mod scene;
 mod shape;
 
+pub use bed::{Bed, BedSample};
+pub use decompose::{DecomposeOptions, Decomposition, calc_deviation, decompose};
 pub use detector::Detector;
 pub use error::ContactError;
 pub use glob::glob_matches;

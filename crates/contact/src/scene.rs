@@ -22,6 +22,8 @@ pub struct ContactPoint {
     pub normal_w: Vec3,
     /// Distance along the normal, m; negative: penetration.
     pub gap: f64,
+    /// Share of the pair's law (stiffness, damping, adhesion) that acts here: 1, but for the samples of a bed.
+    pub weight: f64,
 }
 
 /// A convex piece, or a surface, as the detector asks it.
@@ -31,6 +33,7 @@ pub(crate) enum Solid {
     Primitive(Convex, Twin),
     HalfSpace(Twin),
     Other(Twin),
+    Bed(crate::Bed),
 }
 
 /// The same piece as parry knows it, and its turn within the piece's frame (parry's cylinder stands along y).
@@ -110,6 +113,11 @@ impl Scene {
         &self.pairs
     }
 
+    /// Whether one of a pair's colliders has a bed, whose points are known by their samples alone.
+    pub fn has_bed(&self, pair: usize) -> bool {
+        self.pairs[pair].iter().any(|&c| self.parts[c].iter().any(crate::bed_points::is_bed))
+    }
+
     /// The colliders.
     pub fn colliders(&self) -> &[Collider] {
         &self.colliders
@@ -159,6 +167,7 @@ fn solid_of(collider: &Collider, shape: &Shape) -> Result<Solid, ContactError> {
                 triangles: triangles.len(),
             })?))
         }
+        Shape::Bed(bed) => Solid::Bed(bed.clone()),
         // Its children are pieces of their own; none is left.
         Shape::Compound(_) => Solid::Ball(0.0),
     })
@@ -169,6 +178,10 @@ fn bounds(solid: &Solid) -> (Vec3, Vec3) {
         Solid::Ball(radius) => (Vec3::repeat(*radius), Vec3::zeros()),
         Solid::Primitive(convex, _) => (convex.half_extents(), Vec3::zeros()),
         Solid::HalfSpace(_) => (Vec3::repeat(f64::INFINITY), Vec3::zeros()),
+        Solid::Bed(bed) => {
+            let (centre, half) = bed.bounds();
+            (half, centre)
+        }
         Solid::Other(twin) => {
             let aabb = twin.shape.compute_local_aabb();
             (from_parry(aabb.half_extents()), from_parry(aabb.center()))

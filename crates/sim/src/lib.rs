@@ -35,6 +35,7 @@ mod run;
 mod solve;
 mod state;
 mod step;
+mod weight;
 mod workspace;
 mod world;
 

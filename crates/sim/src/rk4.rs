@@ -109,7 +109,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
 fn open_slots(model: &Model, ws: &Workspace, slots: &mut Vec<ContactMemory>) {
     slots.clear();
     for touch in &ws.touches {
-        let law = &model.laws[touch.pair as usize];
+        let law = &model.laws[touch.pair as usize].weighted(touch.weight);
         let Some(friction) = &law.friction else { continue };
         let n = touch.normal;
         let normal = law.normal.eval(touch.gap, n.dot(&touch.u));
@@ -185,7 +185,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
 
 fn eval_contacts(model: &Model, ws: &mut Workspace, rk: &mut Stages) {
     for touch in &mut ws.touches {
-        let (law, n) = (&model.laws[touch.pair as usize], touch.normal);
+        let (law, n) = (model.laws[touch.pair as usize].weighted(touch.weight), touch.normal);
         let u_n = n.dot(&touch.u);
         let normal = law.normal.eval(touch.gap, u_n);
         touch.out.law = normal.force * n;

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bad_input;
+mod beds;
 mod broad_phase;
 mod closed_form;
 mod identity;
