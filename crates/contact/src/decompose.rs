@@ -5,7 +5,7 @@
 //! partition, W. C. Thibault and B. F. Naylor, "Set operations on polyhedra using binary space partitioning trees",
 //! Computer Graphics 21 (4), 1987):
 //!
-//!   start with the hull of the mesh; while a triangle runs through the inside of a cell, cut the worst cell along one
+//!   start with a box about the mesh; while a triangle runs through the inside of a cell, cut the worst cell along one
 //!
 //! A cell that no triangle runs through is wholly solid or wholly empty, which the mesh's winding number at points inside
 //! of it says. Cells that together are convex again are joined. The result is exact but for round-off; it has about one
@@ -57,8 +57,6 @@ impl Decomposition {
 
 /// Round-off, relative to the mesh's size.
 const ROUND_OFF: f64 = 1e-10;
-/// Relative volume by which the hull of two cells may exceed them, to count as their union.
-const FILLED: f64 = 1e-9;
 /// Points per length at which the deviation is measured by default.
 const FINE: f64 = 50.0;
 
@@ -70,7 +68,7 @@ pub fn decompose(
 ) -> Result<Decomposition, ContactError> {
     let surface = Surface::new(vertices, triangles)?;
     let eps = ROUND_OFF * surface.size;
-    let mut cells = cut(&surface, options, eps)?;
+    let mut cells = cut(&surface, options, eps);
     join(&mut cells, eps);
     let pieces: Vec<Vec<Vec3>> = cells.iter().map(|cell| surface.snap(cell.corners(eps), 10.0 * eps)).collect();
     let spacing = if options.spacing > 0.0 { options.spacing } else { surface.size / FINE };
@@ -90,8 +88,8 @@ pub fn calc_deviation(
 }
 
 /// Solid cells that no triangle runs through, or as many as allowed.
-fn cut(surface: &Surface, options: &DecomposeOptions, eps: f64) -> Result<Vec<Cell>, ContactError> {
-    let mut open = vec![Cell::around(surface, eps)?];
+fn cut(surface: &Surface, options: &DecomposeOptions, eps: f64) -> Vec<Cell> {
+    let mut open = vec![Cell::around(surface)];
     let mut done = Vec::new();
     open[0].update_defect(options.tolerance, eps);
     while let Some(worst) = worst_of(&open) {
@@ -111,7 +109,7 @@ fn cut(surface: &Surface, options: &DecomposeOptions, eps: f64) -> Result<Vec<Ce
     }
     // What is left uncut, at the bound of pieces or without a defect from the start, is solid where most of it is.
     done.extend(open.into_iter().filter(|cell| surface.holds(cell)));
-    Ok(done)
+    done
 }
 
 fn worst_of(cells: &[Cell]) -> Option<usize> {
@@ -120,28 +118,18 @@ fn worst_of(cells: &[Cell]) -> Option<usize> {
 
 /// Joins cells that are convex together.
 fn join(cells: &mut Vec<Cell>, eps: f64) {
-    let mut volumes: Vec<f64> = cells.iter().map(|c| Hull::of(&c.corners(eps)).map_or(0.0, |h| h.volume)).collect();
     let mut i = 0;
     while i < cells.len() {
-        let mut joined = false;
-        for j in i + 1..cells.len() {
-            if !cells[i].touches(&cells[j], eps) {
-                continue;
-            }
-            let both: Vec<Vec3> = [cells[i].corners(eps), cells[j].corners(eps)].concat();
-            let Some(hull) = Hull::of(&both) else { continue };
-            let apart = volumes[i] + volumes[j];
-            if hull.volume <= apart * (1.0 + FILLED) {
-                cells[i] = Cell::of_hull(&hull);
-                volumes[i] = hull.volume;
-                cells.remove(j);
-                volumes.remove(j);
-                joined = true;
-                break;
-            }
-        }
+        let found = (i + 1..cells.len()).find_map(|j| cells[i].joined(&cells[j], eps).map(|both| (j, both)));
         // A cell that has grown may fit to one that was tried before.
-        i = if joined { 0 } else { i + 1 };
+        i = match found {
+            Some((j, both)) => {
+                cells[i] = both;
+                cells.remove(j);
+                0
+            }
+            None => i + 1,
+        };
     }
 }
 
@@ -149,8 +137,6 @@ fn join(cells: &mut Vec<Cell>, eps: f64) {
 pub(crate) struct Hull {
     pub(crate) vertices: Vec<Vec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// m³.
-    pub(crate) volume: f64,
 }
 
 impl Hull {
@@ -159,12 +145,6 @@ impl Hull {
         let points: Vec<_> = points.iter().map(crate::scene::to_parry).collect();
         let (vertices, triangles) = try_convex_hull(&points).ok()?;
         let vertices: Vec<Vec3> = vertices.into_iter().map(crate::scene::from_parry).collect();
-        let o = *vertices.first()?;
-        let six = |t: &[u32; 3]| {
-            let [p, q, r] = t.map(|i| vertices[i as usize] - o);
-            p.cross(&q).dot(&r)
-        };
-        let volume = triangles.iter().map(six).sum::<f64>() / 6.0;
-        (volume > 0.0).then_some(Self { vertices, triangles, volume })
+        Some(Self { vertices, triangles })
     }
 }

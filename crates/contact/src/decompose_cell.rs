@@ -1,7 +1,5 @@
 //! A convex cell of a partition, with the pieces of the mesh's triangles that lie in it.
 
-use crate::ContactError;
-use crate::decompose::Hull;
 use crate::decompose_measure::Surface;
 use spatial::Vec3;
 
@@ -31,6 +29,10 @@ pub(crate) struct Polygon {
     pub(crate) points: Vec<Vec3>,
 }
 
+/// Width of the empty rim about the mesh, relative to its size.
+const MARGIN: f64 = 0.01;
+/// Least volume of the parallelepiped of three normals that make a corner.
+const SHARP: f64 = 1e-7;
 /// Most planes that are tried for a cut.
 const CANDIDATES: usize = 48;
 /// Least cosine between a dent's and a face's normal for the dent to count as part of the face.
@@ -48,38 +50,52 @@ pub(crate) struct Cell {
 }
 
 impl Cell {
-    /// The hull of a mesh.
-    pub(crate) fn around(surface: &Surface, eps: f64) -> Result<Self, ContactError> {
-        let hull = Hull::of(&surface.vertices)
-            .ok_or_else(|| ContactError::OpenMesh { triangles: surface.triangles.len(), what: "encloses no volume" })?;
-        let mut cell = Self::of_hull(&hull);
+    /// A box somewhat larger than a mesh, with all of it inside.
+    pub(crate) fn around(surface: &Surface) -> Self {
+        let low = surface.vertices.iter().fold(Vec3::repeat(f64::INFINITY), |low, p| low.inf(p));
+        let high = surface.vertices.iter().fold(Vec3::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
+        let (centre, half) = (0.5 * (low + high), 0.5 * (high - low) + Vec3::repeat(MARGIN * surface.size));
+        let mut faces = Vec::with_capacity(6);
+        for k in 0..3 {
+            for side in [-1.0, 1.0] {
+                // Counter-clockwise about the outward normal.
+                let ring = [(-1.0, -1.0), (side, -side), (1.0, 1.0), (-side, side)];
+                let at = |(u, v): (f64, f64)| {
+                    let mut p = centre;
+                    p[k] += side * half[k];
+                    p[(k + 1) % 3] += u * half[(k + 1) % 3];
+                    p[(k + 2) % 3] += v * half[(k + 2) % 3];
+                    p
+                };
+                let n = Vec3::ith(k, side);
+                faces.push(Polygon { plane: Plane { n, d: n.dot(&centre) + half[k] }, points: ring.map(at).to_vec() });
+            }
+        }
         let triangles = surface.triangles.iter().filter_map(|t| {
             let points = t.map(|i| surface.vertices[i as usize]);
             Plane::through(points).map(|plane| Polygon { plane, points: points.to_vec() })
         });
-        cell.inner = triangles.collect();
-        cell.drop_faces(eps);
-        Ok(cell)
+        Self { faces, inner: triangles.collect(), defect: 0.0 }
     }
 
-    /// A hull without anything in it.
-    pub(crate) fn of_hull(hull: &Hull) -> Self {
-        let faces = hull.triangles.iter().filter_map(|t| {
-            let points = t.map(|i| hull.vertices[i as usize]);
-            Plane::through(points).map(|plane| Polygon { plane, points: points.to_vec() })
-        });
-        Self { faces: faces.collect(), inner: Vec::new(), defect: 0.0 }
-    }
-
-    /// Its corners, each once.
+    /// Its corners, each once: the points where three faces meet, without those where cuts of neighbours end.
     pub(crate) fn corners(&self, eps: f64) -> Vec<Vec3> {
         let mut out: Vec<Vec3> = Vec::new();
         for p in self.faces.iter().flat_map(|f| &f.points) {
-            if out.iter().all(|q| (p - q).amax() > 10.0 * eps) {
+            if out.iter().all(|q| (p - q).amax() > LYING * eps) && self.is_corner(p, eps) {
                 out.push(*p);
             }
         }
         out
+    }
+
+    /// Whether the normals of the faces through a point span space.
+    fn is_corner(&self, p: &Vec3, eps: f64) -> bool {
+        let near = || self.faces.iter().filter(|f| f.plane.height(p).abs() <= 2.0 * LYING * eps).map(|f| f.plane.n);
+        let Some(first) = near().next() else { return false };
+        let across = near().map(|n| first.cross(&n)).max_by(|a, b| a.norm().total_cmp(&b.norm()));
+        let across = across.unwrap_or_default();
+        near().any(|n| across.dot(&n).abs() > SHARP)
     }
 
     /// Mean of the corners.
@@ -88,15 +104,24 @@ impl Cell {
         corners.iter().sum::<Vec3>() / corners.len().max(1) as f64
     }
 
-    /// Whether the boxes of two cells touch.
-    pub(crate) fn touches(&self, other: &Self, eps: f64) -> bool {
-        let bounds = |cell: &Self| {
-            let points = || cell.faces.iter().flat_map(|f| &f.points);
-            let low = points().fold(Vec3::repeat(f64::INFINITY), |low, p| low.inf(p));
-            (low, points().fold(Vec3::repeat(f64::NEG_INFINITY), |high, p| high.sup(p)))
+    /// The two cells as one, if they share a face and are convex together: if each lies below all other faces of the
+    /// other. What lies below all of these and below the shared plane is in the first, and above it in the second.
+    pub(crate) fn joined(&self, other: &Self, eps: f64) -> Option<Self> {
+        let opposite = |a: &Plane, b: &Plane| {
+            a.n.dot(&b.n) < 0.0 && (a.n + b.n).amax() < SHARP && (a.d + b.d).abs() <= LYING * eps
         };
-        let ((low_a, high_a), (low_b, high_b)) = (bounds(self), bounds(other));
-        (low_a - high_b).max() <= eps && (low_b - high_a).max() <= eps
+        let shared = self.faces.iter().find(|a| other.faces.iter().any(|b| opposite(&a.plane, &b.plane)))?.plane;
+        let against = Plane { n: -shared.n, d: -shared.d };
+        let rest = |cell: &Self, plane: &Plane| -> Vec<Polygon> {
+            cell.faces.iter().filter(|f| !opposite(&f.plane, plane)).cloned().collect()
+        };
+        let (own, others) = (rest(self, &against), rest(other, &shared));
+        let below = |faces: &[Polygon], cell: &Self| {
+            let points = || cell.faces.iter().flat_map(|f| &f.points);
+            faces.iter().all(|face| points().all(|p| face.plane.height(p) <= LYING * eps))
+        };
+        let fits = below(&own, other) && below(&others, self);
+        fits.then(|| Self { faces: [own, others].concat(), inner: Vec::new(), defect: 0.0 })
     }
 
     /// Forgets polygons that lie in the cell's faces.

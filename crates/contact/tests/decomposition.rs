@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 
 type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// Deviation of an exact decomposition, m per m of size: planes of triangles meet at round-off, parry measures to 1e-8.
-const EXACT: f64 = 1e-7;
+/// What the measure resolves, m: it looks 1e-6 of the size off a surface for what covers it.
+const EXACT: f64 = 3e-7;
 
 /// Prism over a polygon without holes, counter-clockwise, whose triangulation is given.
 fn prism(outline: &[(f64, f64)], faces: &[[u32; 3]], height: f64) -> Mesh {
@@ -118,7 +118,7 @@ fn pieces_are_height_true_and_fill_the_mesh_exactly() {
         let (voxel_pieces, voxels) = by_voxels(&mesh);
         println!("{name:14} {:7}   {:12.1e}   {voxel_pieces} {voxels:.1e}", found.pieces.len(), found.deviation);
         assert!(found.pieces.len() <= most, "{name}: {} pieces", found.pieces.len());
-        assert!(found.deviation < EXACT * 0.3, "{name}: {}", found.deviation);
+        assert!(found.deviation < EXACT, "{name}: {}", found.deviation);
         let filled: f64 = found.pieces.iter().map(|p| volume(p)).sum();
         assert!((filled / mesh_volume(&mesh) - 1.0).abs() < 1e-9, "{name}: {filled}");
         assert!(found.deviation < voxels);
