@@ -5,13 +5,13 @@
 //! partition, W. C. Thibault and B. F. Naylor, "Set operations on polyhedra using binary space partitioning trees",
 //! Computer Graphics 21 (4), 1987):
 //!
-//!   start with a box about the mesh; while a triangle runs through the inside of a cell, cut the worst cell along one
+//!   start with a box about the mesh and cut off what lies wholly outside; while a triangle runs through the inside of a cell, cut the worst cell along one
 //!
 //! A cell that no triangle runs through is wholly solid or wholly empty, which the mesh's winding number at points inside
-//! of it says. Cells that together are convex again are joined. The result is exact but for round-off; it has about one
-//! piece per facet of a concave wall. A `tolerance` accepts a dent shallower than it as filled, which saves pieces on
-//! curved walls; it never fills more, and never drops a thin wall. [`Decomposition::deviation`] is measured afterwards, on
-//! both surfaces.
+//! of it says. Cells that are convex together are joined. The result is exact but for round-off. A concave wall takes one
+//! piece per facet: a drogue of 64 facets becomes 64 pieces, so smooth cavities are better given as analytic shapes. A
+//! `tolerance` lets pockets and grooves shallower than it be filled; it never fills deeper ones, and never drops a thin
+//! wall. [`Decomposition::deviation`] is measured afterwards, on both surfaces, and resolves 1e-6 of the mesh's size.
 //!
 //! Deterministic: cells are cut in the order of their defects, ties in the order of their making.
 
@@ -24,7 +24,7 @@ use spatial::{Pose, Vec3};
 /// How a mesh is decomposed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DecomposeOptions {
-    /// Depth of dents that may be filled, m; 0: none.
+    /// Depth of pockets that may be filled, m; 0: none.
     pub tolerance: f64,
     /// Most cells while cutting. What is left uncut then shows in the deviation.
     pub max_pieces: usize,
@@ -89,7 +89,7 @@ pub fn calc_deviation(
 
 /// Solid cells that no triangle runs through, or as many as allowed.
 fn cut(surface: &Surface, options: &DecomposeOptions, eps: f64) -> Vec<Cell> {
-    let mut open = vec![Cell::around(surface)];
+    let mut open = vec![Cell::around(surface).trimmed(surface, eps)];
     let mut done = Vec::new();
     open[0].update_defect(options.tolerance, eps);
     while let Some(worst) = worst_of(&open) {

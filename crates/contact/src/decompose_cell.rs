@@ -35,8 +35,8 @@ const MARGIN: f64 = 0.01;
 const SHARP: f64 = 1e-7;
 /// Most planes that are tried for a cut.
 const CANDIDATES: usize = 48;
-/// Least cosine between a dent's and a face's normal for the dent to count as part of the face.
-const ALIKE: f64 = 0.5;
+/// Cosine beyond which a polygon looks against a face: it is the back of a thin wall there, not a pocket's floor or side.
+const AGAINST: f64 = 0.5;
 
 /// A convex cell.
 #[derive(Clone, Debug)]
@@ -76,6 +76,21 @@ impl Cell {
             Plane::through(points).map(|plane| Polygon { plane, points: points.to_vec() })
         });
         Self { faces, inner: triangles.collect(), defect: 0.0 }
+    }
+
+    /// Without what lies above triangles that have the whole mesh below them: as tight as the mesh is convex.
+    pub(crate) fn trimmed(mut self, surface: &Surface, eps: f64) -> Self {
+        for plane in self.inner.iter().map(|p| p.plane).collect::<Vec<_>>() {
+            let known =
+                self.faces.iter().any(|f| (f.plane.n - plane.n).amax() < SHARP && (f.plane.d - plane.d).abs() < eps);
+            if known || surface.vertices.iter().any(|v| plane.height(v) > LYING * eps) {
+                continue;
+            }
+            if let Some(below) = self.clone().split(&plane, eps).into_iter().next() {
+                self = below;
+            }
+        }
+        self
     }
 
     /// Its corners, each once: the points where three faces meet, without those where cuts of neighbours end.
@@ -138,7 +153,7 @@ impl Cell {
         let mut depth = f64::INFINITY;
         for face in &self.faces {
             let deepest = polygon.points.iter().map(|p| -face.plane.height(p)).fold(0.0, f64::max);
-            if deepest <= tolerance && face.plane.n.dot(&polygon.plane.n) > ALIKE {
+            if deepest <= tolerance && face.plane.n.dot(&polygon.plane.n) > -AGAINST {
                 return 0.0;
             }
             depth = depth.min(deepest);

@@ -163,19 +163,34 @@ fn rod_passes_through_the_gap_of_a_u_and_stops_at_its_floor() {
     assert!((gap_at(0.0495 - 1e-5) + 1e-5).abs() < 1e-9);
 }
 
-#[test]
-fn tolerance_saves_pieces_and_is_kept() {
-    let (vertices, triangles) = annulus(96);
-    println!("tolerance, m   pieces   deviation, m");
-    let mut last = usize::MAX;
-    for tolerance in [0.0, 1e-4, 5e-4, 2e-3] {
-        let options = DecomposeOptions { tolerance, ..DecomposeOptions::default() };
-        let found = decompose(&vertices, &triangles, &options).unwrap();
-        println!("{tolerance:12.0e} {:8}   {:.1e}", found.pieces.len(), found.deviation);
-        assert!(found.deviation <= tolerance + EXACT && found.pieces.len() <= last);
-        last = found.pieces.len();
+/// A plate with a square pocket in its top.
+fn plate_with_pocket(depth: f64) -> Mesh {
+    let ring = |half: f64, z: f64| {
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Vec3::new(half * x, half * y, z))
+    };
+    let vertices = [ring(0.05, 0.0), ring(0.05, 0.02), ring(0.03, 0.02), ring(0.03, 0.02 - depth)].concat();
+    let mut triangles = vec![[0, 2, 1], [0, 3, 2], [12, 13, 14], [12, 14, 15]];
+    for below in [0, 4, 8] {
+        for i in 0..4 {
+            let [a, b] = [below + i, below + (i + 1) % 4];
+            triangles.extend([[a, b, b + 4], [a, b + 4, a + 4]]);
+        }
     }
-    assert!(last < 96);
+    (vertices, triangles)
+}
+
+#[test]
+fn tolerance_fills_shallow_pockets_and_no_deeper_ones() {
+    println!("pocket, m   tolerance, m   pieces   deviation, m");
+    for (depth, tolerance, one) in [(5e-4, 0.0, false), (5e-4, 4e-4, false), (5e-4, 6e-4, true), (5e-3, 6e-4, false)] {
+        let (vertices, triangles) = plate_with_pocket(depth);
+        let options = DecomposeOptions { tolerance, spacing: 1e-3, ..DecomposeOptions::default() };
+        let found = decompose(&vertices, &triangles, &options).unwrap();
+        println!("{depth:9.0e} {tolerance:14.0e} {:8}   {:.1e}", found.pieces.len(), found.deviation);
+        assert_eq!(found.pieces.len() == 1, one);
+        let expected = if one { depth } else { 0.0 };
+        assert!((found.deviation - expected).abs() < EXACT);
+    }
 }
 
 #[test]
