@@ -4,6 +4,7 @@
 //! stateless, so the points do not depend on what was asked before.
 
 use crate::analytic::{Raw, ball_ball, plane_ball, plane_cuboid, swapped};
+use crate::bed_points::{BedBuffer, is_bed};
 use crate::convex::{Convex, Core};
 use crate::faceted::FacetBuffer;
 use crate::manifold::{add_nearest, mix};
@@ -24,6 +25,7 @@ pub struct Detector {
     reduction: Reduction,
     primitives: PrimitiveBuffer,
     facets: FacetBuffer,
+    beds: BedBuffer,
     narrow: u64,
 }
 
@@ -52,6 +54,7 @@ impl Detector {
             reduction: Reduction::default(),
             primitives: PrimitiveBuffer::default(),
             facets: FacetBuffer::default(),
+            beds: BedBuffer::default(),
             narrow: 0,
         }
     }
@@ -80,7 +83,26 @@ impl Detector {
             self.reduction.reduce(&mut self.raw);
             let reduction = &self.reduction;
             out.extend(self.raw.iter().enumerate().map(|(i, p)| p.in_pair(pair, reduction.weight_of(i))));
+            let own = (&scene.parts[a][..], &poses[body_a]);
+            self.add_beds(own, (&scene.parts[b], &poses[body_b]), (pair, margin), out);
         }
+    }
+
+    /// Adds the points of beds to those of a pair, in the order of features.
+    fn add_beds(
+        &mut self,
+        a: (&[Part], &Frame),
+        b: (&[Part], &Frame),
+        (pair, margin): (u32, f64),
+        out: &mut Vec<ContactPoint>,
+    ) {
+        self.beds.find(a, b, margin);
+        if self.beds.found.is_empty() {
+            return;
+        }
+        let start = out.len() - self.raw.len();
+        out.extend(self.beds.found.iter().map(|(p, weight)| p.in_pair(pair, *weight)));
+        out[start..].sort_unstable_by_key(|p| p.feature);
     }
 
     fn update_boxes(&mut self, scene: &Scene, poses: &[Frame], reach: &[f64]) {
@@ -131,6 +153,9 @@ impl Detector {
         for (i, a) in parts_a.iter().enumerate() {
             let frame_a = pose_a * &a.frame_bp;
             for (j, b) in parts_b.iter().enumerate() {
+                if is_bed(a) || is_bed(b) {
+                    continue;
+                }
                 let frame_b = pose_b * &b.frame_bp;
                 let start = self.raw.len();
                 self.find_parts((a, &frame_a), (b, &frame_b), margin);
@@ -160,8 +185,8 @@ impl Detector {
                 }
                 return;
             }
-            // Two of them never touch.
-            (Solid::HalfSpace(_), Solid::HalfSpace(_)) => return,
+            // Two half-spaces never touch; beds have a way of their own.
+            (Solid::HalfSpace(_), Solid::HalfSpace(_)) | (Solid::Bed(_), _) | (_, Solid::Bed(_)) => return,
             (Solid::Other(..), _) | (_, Solid::Other(..)) => {
                 return self.facets.add_points((a, frame_a), (b, frame_b), margin, &mut self.raw);
             }
@@ -189,7 +214,7 @@ impl Detector {
 
 fn twin_of(solid: &Solid) -> Option<&Twin> {
     match solid {
-        Solid::Ball(_) => None,
+        Solid::Ball(_) | Solid::Bed(_) => None,
         Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Other(twin, _) => Some(twin),
     }
 }

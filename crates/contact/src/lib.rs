@@ -24,6 +24,11 @@
 //!
 //! At most 16 points of a pair stay, with weights that keep what all of them do together where a face lies on a face.
 //!
+//! # Distributed contact
+//!
+//! A [`Bed`] spreads contact over a face by samples with areas; each of its points has a [`ContactPoint::weight`] that scales
+//! the pair's law. Its points are not reduced, and known by their sample.
+//!
 //! # Limits
 //!
 //! A closed mesh is a solid (turned if it is inside out), an open one thin and two-sided; a body that is wholly inside one
@@ -33,8 +38,14 @@
 
 mod analytic;
 mod axes;
+mod bed;
+mod bed_faces;
+mod bed_points;
 mod convex;
 mod cylinder;
+mod decompose;
+mod decompose_cell;
+mod decompose_measure;
 mod detector;
 mod error;
 mod faceted;
@@ -49,6 +60,8 @@ mod rim;
 mod scene;
 mod shape;
 
+pub use bed::{Bed, BedSample};
+pub use decompose::{DecomposeOptions, Decomposition, calc_deviation, decompose};
 pub use detector::Detector;
 pub use error::ContactError;
 pub use glob::glob_matches;

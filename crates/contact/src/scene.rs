@@ -34,6 +34,7 @@ pub(crate) enum Solid {
     Primitive(Convex, Twin),
     HalfSpace(Twin),
     Other(Twin, Faceted),
+    Bed(crate::Bed),
 }
 
 /// The same piece as parry knows it, and its turn within the piece's frame (parry's cylinder stands along y).
@@ -113,6 +114,11 @@ impl Scene {
         &self.pairs
     }
 
+    /// Whether one of a pair's colliders has a bed, whose points are known by their samples alone.
+    pub fn has_bed(&self, pair: usize) -> bool {
+        self.pairs[pair].iter().any(|&c| self.parts[c].iter().any(crate::bed_points::is_bed))
+    }
+
     /// The colliders.
     pub fn colliders(&self) -> &[Collider] {
         &self.colliders
@@ -162,6 +168,7 @@ fn solid_of(collider: &Collider, shape: &Shape) -> Result<Solid, ContactError> {
             let (collider, triangles) = (collider.name.clone(), triangles.len());
             known.ok_or(ContactError::DegenerateMesh { collider, triangles })?
         }
+        Shape::Bed(bed) => Solid::Bed(bed.clone()),
         // Its children are pieces of their own; none is left.
         Shape::Compound(_) => Solid::Ball(0.0),
     })
@@ -172,6 +179,10 @@ fn bounds(solid: &Solid) -> (Vec3, Vec3) {
         Solid::Ball(radius) => (Vec3::repeat(*radius), Vec3::zeros()),
         Solid::Primitive(convex, _) => (convex.half_extents(), Vec3::zeros()),
         Solid::HalfSpace(_) => (Vec3::repeat(f64::INFINITY), Vec3::zeros()),
+        Solid::Bed(bed) => {
+            let (centre, half) = bed.bounds();
+            (half, centre)
+        }
         Solid::Other(twin, _) => {
             let aabb = twin.shape.compute_local_aabb();
             (from_parry(aabb.half_extents()), from_parry(aabb.center()))

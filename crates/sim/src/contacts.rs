@@ -37,6 +37,8 @@ pub(crate) struct Touch {
     /// From A to B.
     pub normal: Vec3,
     pub gap: f64,
+    /// Share of the pair's law that acts here.
+    pub weight: f64,
     /// Deflection at the start, carried into the present plane.
     pub s: Vec3,
     /// How rested the point was at the start.
@@ -93,6 +95,7 @@ impl Touch {
     /// the neighbourhood of rest; where that did not settle it, the secant through the unloaded bristle: friction is
     /// the slope of a convex potential, which the secant's parabola bounds from above, so that every pass descends.
     pub fn eval(&mut self, law: &PairLaw, u_new: &Vec3, h: f64) -> Outcome {
+        let law = &*law.weighted(self.weight);
         let (n, at) = (self.normal, self.place);
         let rate = (1.0 - at.theta) * self.u + at.theta * u_new;
         let (u_n, rate_n) = (n.dot(u_new), n.dot(&rate));
@@ -215,6 +218,7 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
             rot_b: ws.frames[body_b].rot,
             normal: contact.normal_w,
             gap: contact.gap,
+            weight: contact.weight,
             s: Vec3::zeros(),
             rest: 0.0,
             grain: Vec3::zeros(),
@@ -233,14 +237,15 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
             ws.touches[i].grain = grain.calc_direction(&ws.touches[i]);
         }
     }
-    remember(&state.bristles, &mut ws.touches, &Turned { from: &ws.frames_start, to: &ws.frames });
+    let turned = Turned { from: &ws.frames_start, to: &ws.frames };
+    remember(&model.scene, &state.bristles, &mut ws.touches, &turned);
 }
 
 /// Distance (m) within which a point inherits the bristle of a vanished neighbour of the same pair.
 const NEIGHBOUR: f64 = 2e-3;
 
 /// Hands every touch the bristle of its identity; where features say nothing, that of the nearest lost neighbour.
-fn remember(memories: &[ContactMemory], touches: &mut [Touch], turned: &Turned<'_>) {
+fn remember(scene: &contact::Scene, memories: &[ContactMemory], touches: &mut [Touch], turned: &Turned<'_>) {
     let mut known = 0;
     for touch in touches.iter_mut() {
         if let Some(at) = find_memory(memories, touch.pair, touch.feature) {
@@ -253,7 +258,8 @@ fn remember(memories: &[ContactMemory], touches: &mut [Touch], turned: &Turned<'
     }
     for memory in memories {
         let taken = |t: &Touch| (t.pair, t.feature) == (memory.pair, memory.feature);
-        if touches.iter().any(taken) {
+        // A bed's samples are known by their number, and there may be hundreds of them.
+        if scene.has_bed(memory.pair as usize) || touches.iter().any(taken) {
             continue;
         }
         let is_orphan = |t: &Touch| {

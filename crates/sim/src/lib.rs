@@ -37,6 +37,7 @@ mod run;
 mod solve;
 mod state;
 mod step;
+mod weight;
 mod workspace;
 mod world;
 

@@ -67,7 +67,8 @@ impl PivotTouch {
     /// Evaluates the law at the angular velocity `rate + gain`, and draws the line for the next solve.
     fn eval(&mut self, model: &Model, ws: &Workspace, gain: &Vec3) {
         let touch = &ws.touches[self.touch];
-        let Some(law) = &model.laws[touch.pair as usize].pivot else { return };
+        let laws = model.laws[touch.pair as usize].weighted(touch.weight);
+        let Some(law) = &laws.pivot else { return };
         let trial = self.base + self.beta * (self.rate + gain);
         let (normal, normal_force) = (touch.normal, touch.out.normal_force);
         self.out = law.eval(&Turn { start: self.start, trial, normal, elapsed: self.elapsed, normal_force });

@@ -115,7 +115,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
 fn open_slots(model: &Model, ws: &Workspace, slots: &mut Vec<ContactMemory>) {
     slots.clear();
     for touch in &ws.touches {
-        let law = &model.laws[touch.pair as usize];
+        let law = model.laws[touch.pair as usize].weighted(touch.weight);
         if !law.remembers() {
             continue;
         }
@@ -221,7 +221,7 @@ fn eval_contacts(model: &Model, ws: &mut Workspace, rk: &mut Stages) {
     // Back from the present frames to those of the step's start.
     let back = Turned { from: &ws.frames, to: &ws.frames_start };
     for touch in &mut ws.touches {
-        let (law, n) = (&model.laws[touch.pair as usize], touch.normal);
+        let (law, n) = (model.laws[touch.pair as usize].weighted(touch.weight), touch.normal);
         let normal = law.normal.eval(touch.gap, n.dot(&touch.u));
         touch.out.law = normal.force * n;
         touch.out.normal_force = normal.force + law.normal.adhesion;

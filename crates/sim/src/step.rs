@@ -215,7 +215,7 @@ fn is_stiff(model: &Model, touches: &[Touch], index: usize) -> bool {
         model.owners.get(body).map_or(f64::INFINITY, |&(v, b)| model.vehicles[v].tree.bodies[b].inertia.mass)
     };
     let touch = &touches[index];
-    let law = &model.laws[touch.pair as usize];
+    let law = model.laws[touch.pair as usize].weighted(touch.weight);
     let lighter = mass(touch.body_a).min(mass(touch.body_b));
     let normal = law.normal.eval(touch.gap.min(-1e-5), 0.0);
     let stiffness = (-normal.d_gap).max(law.friction.map_or(0.0, |f| f.spring().0));

@@ -40,6 +40,8 @@ pub struct TouchReport {
     pub normal_force: f64,
     /// Gap at the step's start, m; negative: penetration.
     pub gap: f64,
+    /// Share of the pair's law that acts at the point: 1, but for the samples of a bed.
+    pub weight: f64,
     /// Bristle deflection, m.
     pub deflection: f64,
     /// Whether the bristle sticks.
@@ -199,6 +201,7 @@ impl World {
             force_w: t.out.force,
             normal_force: t.out.normal_force,
             gap: t.gap,
+            weight: t.weight,
             deflection: t.out.s.norm(),
             sticks: t.out.sticks,
         })

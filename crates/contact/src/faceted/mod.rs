@@ -72,6 +72,7 @@ impl Side<'_> {
             Solid::Other(_, Faceted::Hull(piece)) => Side::Hull(piece),
             Solid::Ball(radius) => Side::Other(Piece::ball(*radius)),
             Solid::Primitive(convex, _) => Side::Other(Piece::primitive(convex)),
+            Solid::Bed(_) => return None,
         })
     }
 

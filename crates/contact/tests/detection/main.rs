@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod bars;
+mod beds;
 mod broad_phase;
 mod closed_form;
 mod handover;

@@ -3,9 +3,10 @@
 //! Shapes of different vehicles (and of the world) may touch unless a `[[contact]]` says `enabled = false`; shapes of one
 //! vehicle only where a `[[contact]]` names them. Every shape answers to its own name and to its link's.
 
+use super::beds;
 use super::faults::Faults;
 use super::laws::{pair_law, pivot_law};
-use crate::spec::{Grain, Scenario, ShapeKind};
+use crate::spec::{Grain, Scenario};
 use contact::Shape;
 use multibody::{Geometry, RobotDescription};
 use sim::{Base, PairLaw, ShapeSpec, VehicleSpec};
@@ -34,7 +35,7 @@ pub(super) fn resolve(
     for (v, robot) in robots.iter().enumerate() {
         shapes.extend(of_robot(v, &vehicles[v].name, robot));
     }
-    add_scenario_shapes(scenario, vehicles, &mut shapes, faults);
+    add_scenario_shapes(scenario, (robots, vehicles), &mut shapes, faults);
     check_rules(scenario, &shapes, faults);
     let mut pairs = Vec::new();
     for b in 1..shapes.len() {
@@ -80,19 +81,19 @@ pub fn shape_of_geometry(geometry: &Geometry) -> Shape {
 
 fn add_scenario_shapes(
     scenario: &Scenario,
-    vehicles: &[VehicleSpec],
+    (robots, vehicles): (&[RobotDescription], &[VehicleSpec]),
     shapes: &mut Vec<Named>,
     faults: &mut Faults<'_>,
 ) {
     for (i, shape) in scenario.shapes.iter().enumerate() {
         let Some((vehicle, link)) = place_of(vehicles, &shape.on, &format!("shape[{i}].on"), faults) else { continue };
-        let spec = ShapeSpec {
-            name: shape.name.clone(),
-            vehicle,
-            link,
-            pose_ls: shape.pose.pose(),
-            shape: shape_of_kind(&shape.kind),
+        let description = vehicle.map(|v| &robots[v].links[link]);
+        let Some((pose, form)) = beds::shape_of_kind(&shape.kind, description, &format!("shape[{i}].of"), faults)
+        else {
+            continue;
         };
+        let pose_ls = shape.pose.pose() * pose;
+        let spec = ShapeSpec { name: shape.name.clone(), vehicle, link, pose_ls, shape: form };
         let mut names = vec![shape.place()];
         names.extend(vehicle.map(|_| shape.on.clone()));
         shapes.push(Named { spec, names });
@@ -120,19 +121,6 @@ pub(super) fn place_of(
         faults.unknown(key, "link", link, links.iter().map(|l| l.name.as_str()));
     }
     found.map(|l| (Some(v), l))
-}
-
-fn shape_of_kind(kind: &ShapeKind) -> Shape {
-    match *kind {
-        ShapeKind::Box { size_m } => Shape::Cuboid { half_extents: 0.5 * Vec3::from(size_m) },
-        ShapeKind::Sphere { radius_m } => Shape::Ball { radius: radius_m },
-        ShapeKind::Cylinder { radius_m, length_m } => Shape::Cylinder { radius: radius_m, half_length: 0.5 * length_m },
-        ShapeKind::Capsule { radius_m, length_m } if length_m > 0.0 => {
-            Shape::Capsule { radius: radius_m, half_length: 0.5 * length_m }
-        }
-        ShapeKind::Capsule { radius_m, .. } => Shape::Ball { radius: radius_m },
-        ShapeKind::HalfSpace => Shape::HalfSpace,
-    }
 }
 
 /// A rule that names nothing is a slip of the pen.

@@ -5,6 +5,7 @@
 //! `SOFTDOCK_BLESS=1 cargo test -p softdock-sim -- table` writes them anew.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod beds;
 mod brush;
 mod convergence;
 mod determinism;
