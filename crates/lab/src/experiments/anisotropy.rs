@@ -13,11 +13,8 @@ use sim::Grain;
 use spatial::Vec3;
 
 /// The entry in the catalogue.
-pub const EXPERIMENT: Experiment = Experiment {
-    name: "anisotropy",
-    question: "Which way does the friction force of a brushed surface point?",
-    run,
-};
+pub const EXPERIMENT: Experiment =
+    Experiment { name: "anisotropy", question: "Which way does the friction force of a brushed surface point?", run };
 
 const MU: f64 = 0.4;
 const ACROSS: f64 = 0.5;

@@ -35,7 +35,8 @@ const REACH: f64 = 1e-5;
 
 fn run(options: &Options) -> Result<Outcome, LabError> {
     let step = options.step.unwrap_or(2e-4);
-    let ratios: &[f64] = if options.quick { &[0.3, 1.0] } else { &[0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 3.0, 5.0] };
+    let ratios: &[f64] =
+        if options.quick { &[0.3, 1.0] } else { &[0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 3.0, 5.0] };
     let counts: &[usize] = if options.quick { &[32, 128] } else { &[8, 16, 32, 64, 128, 256] };
     let mut outcome = Outcome::default();
     let (mut forces, mut torques, mut errors) = (Vec::new(), Vec::new(), Vec::new());
@@ -51,7 +52,12 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
         }
         if count == 128 {
             outcome.figures.push(Figure::at_most("force off the curve, 128 points, worst over μN", worst.0, 0.01, "1"));
-            outcome.figures.push(Figure::at_most("torque off the curve, 128 points, worst over ⅔ μNR", worst.1, 0.01, "1"));
+            outcome.figures.push(Figure::at_most(
+                "torque off the curve, 128 points, worst over ⅔ μNR",
+                worst.1,
+                0.01,
+                "1",
+            ));
         }
         errors.push((count as f64, worst));
     }
@@ -62,7 +68,8 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
             .theory("torque, closed form", fine().map(|e| (e, 1.5 * calc_disc(e).1)).collect())
             .marks("force", forces)
             .marks("torque", torques),
-        Chart::new("Worst error of the two curves", "points", "error").logarithmic(true, true)
+        Chart::new("Worst error of the two curves", "points", "error")
+            .logarithmic(true, true)
             .marks("force, over μN", errors.iter().map(|e| (e.0, e.1.0)).collect())
             .marks("torque, over ⅔ μNR", errors.iter().map(|e| (e.0, e.1.1)).collect()),
     ];
@@ -81,7 +88,8 @@ fn sunflower(count: usize) -> impl Iterator<Item = (f64, f64)> {
 /// A disc on a slide along x, a lift and a spindle.
 fn rig(count: usize, step: f64) -> Result<Rig, LabError> {
     let bare = |name| link(name, 0.0, Vec3::zeros(), None);
-    let disc = link("disc", 1.0, Vec3::new(3e-3, 3e-3, 5e-3), Some(Geometry::Cylinder { radius: RADIUS, length: 2.0 * BALL }));
+    let disc =
+        link("disc", 1.0, Vec3::new(3e-3, 3e-3, 5e-3), Some(Geometry::Cylinder { radius: RADIUS, length: 2.0 * BALL }));
     let robot = RobotDescription {
         name: "disc".to_owned(),
         file: "disc (built in)".into(),

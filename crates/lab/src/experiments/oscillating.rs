@@ -62,7 +62,8 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
     let all = laws(4.0);
     let drifts = std::thread::scope(|scope| {
         let runs: Vec<_> = all.iter().map(|(_, law)| scope.spawn(move || drift(*law, cycles, step))).collect();
-        let join = |run: std::thread::ScopedJoinHandle<'_, _>| run.join().unwrap_or_else(|p| std::panic::resume_unwind(p));
+        let join =
+            |run: std::thread::ScopedJoinHandle<'_, _>| run.join().unwrap_or_else(|p| std::panic::resume_unwind(p));
         runs.into_iter().map(join).collect::<Result<Vec<_>, LabError>>()
     })?;
     let reach = LIMIT / BRISTLE.0;
@@ -146,8 +147,14 @@ fn hysteresis() -> Chart {
         for k in 0..=2 * n {
             let x = 0.9 * reach * (2.0 * PI * f64::from(k) / f64::from(n)).sin();
             let moved = Vec3::x() * (x - x0);
-            let brush =
-                law.eval(&Trial { s, s_trial: s + moved, slip: moved / elapsed, elapsed, normal_force: GRAVITY, ..Trial::default() });
+            let brush = law.eval(&Trial {
+                s,
+                s_trial: s + moved,
+                slip: moved / elapsed,
+                elapsed,
+                normal_force: GRAVITY,
+                ..Trial::default()
+            });
             (s, x0) = (brush.s, x);
             if k >= n {
                 points.push((x / reach, -brush.force.x / LIMIT));

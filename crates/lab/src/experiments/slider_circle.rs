@@ -61,7 +61,8 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
         .theory("springs' ends", ring(RADIUS))
         .theory("steady state", ring(radius));
     path.equal_scales = true;
-    let mut lags = Chart::new("Lag of the friction force behind −velocity", "time, s", "lag, °").line("measured", seen.lags);
+    let mut lags =
+        Chart::new("Lag of the friction force behind −velocity", "time, s", "lag, °").line("measured", seen.lags);
     let steady = vec![(0.0, lag.to_degrees()), (2.0 * turn, lag.to_degrees())];
     lags = lags.theory("asin(s_max/ρ)", steady);
     let run = film.develop(&rig)?;

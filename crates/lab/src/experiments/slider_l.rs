@@ -1,6 +1,6 @@
 //! A block that is led round a corner: the friction force must turn with the motion, over the bristle's length.
 //!
-//! The block is led (springs of 1e7 N/m) 10 mm along x, then 10 mm along y. Past the corner the deflection follows the
+//! The block is led (1e7 N/m) 10 mm along x, then 10 mm along y. Past the corner the deflection follows the
 //! tractrix, tan(θ/2) = e^{−y/s_max}, θ from the motion to the bristle, whatever the speed; its length stays s_max.
 
 use crate::bench::Rig;
@@ -18,6 +18,10 @@ const MU: f64 = 0.4;
 const SPEED: f64 = 0.01;
 const LEG: f64 = 0.01;
 const POINT: f64 = 1e6;
+/// Stiffness and damping of the lead: overdamped, so that the block does not swing back at the corner and unload its bristle.
+const LEAD: (f64, f64) = (1e7, 1e4);
+/// Rest at the corner, s: fifty times the lead's damping over its stiffness.
+const PAUSE: f64 = 0.05;
 /// Deflection at the bound, m.
 const REACH: f64 = 1e-3;
 
@@ -27,8 +31,8 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
     let mut film = rig.film((0.01 / step).ceil() as u64);
     let (mut angle, mut theory, mut path) = (Vec::new(), Vec::new(), Vec::new());
     let (mut worst_angle, mut worst_size) = (0.0_f64, 0.0_f64);
-    for k in 1..=(2.0 * LEG / SPEED / step) as u64 {
-        lead(&mut rig, SPEED * step * k as f64);
+    for k in 1..=((2.0 * LEG / SPEED + PAUSE) / step) as u64 {
+        lead(&mut rig, step * k as f64);
         rig.advance()?;
         film.shoot(&rig.world);
         let q = &rig.world.state().q;
@@ -37,8 +41,7 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
             continue;
         }
         let force = rig.friction_force();
-        let (measured, exact) = (force.x.atan2(-force.y).abs(), calc_turning(FRAC_PI_2, q[1], REACH));
-        let measured = if force.x < 0.0 { (-force.x).atan2(-force.y) } else { measured };
+        let (measured, exact) = ((-force.x).atan2(-force.y), calc_turning(FRAC_PI_2, q[1], REACH));
         worst_angle = worst_angle.max((measured - exact).abs());
         worst_size = worst_size.max((force.norm() / (MU * GRAVITY) - 1.0).abs());
         angle.push((1e3 * q[1], measured.to_degrees()));
@@ -63,15 +66,16 @@ fn rig(step: f64) -> Result<Rig, LabError> {
     let stiffness = MU * GRAVITY / REACH / 4.0;
     let bristle = Bristle { mu_static: MU, mu_kinetic: MU, stiffness, ..Bristle::default() };
     let mut bench = gantry_block(EXPERIMENT.name, 1.0, contact_law(POINT, 1e3, bristle), step);
-    bench.add_spring("lead_x", GANTRY[0], 1e7, 1e3);
-    bench.add_spring("lead_y", GANTRY[1], 1e7, 1e3);
+    bench.add_spring("lead_x", GANTRY[0], LEAD.0, LEAD.1);
+    bench.add_spring("lead_y", GANTRY[1], LEAD.0, LEAD.1);
     let mut rig = bench.build()?;
     settle_gantry(&mut rig, 1.0, POINT);
     Ok(rig)
 }
 
-/// Commands the place that lies `way` along the L.
-fn lead(rig: &mut Rig, way: f64) {
+/// Commands the place on the L at `t`.
+fn lead(rig: &mut Rig, t: f64) {
     let commands = rig.world.commands_mut();
-    (commands[0].position, commands[1].position) = (way.min(LEG), (way - LEG).max(0.0));
+    commands[0].position = (SPEED * t).min(LEG);
+    commands[1].position = (SPEED * (t - PAUSE) - LEG).max(0.0);
 }

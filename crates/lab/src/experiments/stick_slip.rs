@@ -248,13 +248,9 @@ fn force_chart(case: &StickSlip, run: &Pull) -> Chart {
             exact.push((t, case.spring_force(t, phase.at(t).0)));
         }
     }
-    Chart::new(
-        format!("Spring force: {} N/m, {} m/s", case.pull_stiffness, case.pull_speed),
-        "time, s",
-        "force, N",
-    )
-    .line("measured", run.force.clone())
-    .theory("event-exact", exact)
+    Chart::new(format!("Spring force: {} N/m, {} m/s", case.pull_stiffness, case.pull_speed), "time, s", "force, N")
+        .line("measured", run.force.clone())
+        .theory("event-exact", exact)
 }
 
 fn error_chart(grid: &[StickSlip], fine: &[Cycle], coarse: &[Cycle]) -> Chart {
@@ -264,7 +260,8 @@ fn error_chart(grid: &[StickSlip], fine: &[Cycle], coarse: &[Cycle]) -> Chart {
             .map(|(c, m)| (step((c.pull_stiffness / MASS).sqrt()), errors(c, m)[which]))
             .collect::<Vec<_>>()
     };
-    let mut chart = Chart::new("Error against the event-exact solution", "ω h", "relative error").logarithmic(true, true);
+    let mut chart =
+        Chart::new("Error against the event-exact solution", "ω h", "relative error").logarithmic(true, true);
     for (which, name) in ["period", "amplitude", "stick duration"].into_iter().enumerate() {
         let mut points = of(fine, which, |_| RESOLUTION);
         points.extend(of(coarse, which, |omega| 1e-3 * omega));
