@@ -34,7 +34,7 @@ const NORMAL: f64 = 4e6;
 const REACH: f64 = 1e-5;
 
 fn run(options: &Options) -> Result<Outcome, LabError> {
-    let step = options.step.unwrap_or(2e-4);
+    let step = options.step.unwrap_or(1e-3);
     let ratios: &[f64] =
         if options.quick { &[0.3, 1.0] } else { &[0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 3.0, 5.0] };
     let counts: &[usize] = if options.quick { &[128, 256] } else { &[8, 16, 32, 64, 128, 256] };
