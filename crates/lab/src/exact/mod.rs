@@ -1,1 +1,5 @@
 //! Closed forms that need more than a line, and event-exact references: independent of the simulator.
+
+pub mod impact;
+pub mod peg;
+pub mod slider;
