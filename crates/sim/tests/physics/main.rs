@@ -18,3 +18,4 @@ mod stiff;
 mod support;
 mod symmetry;
 mod torque_free;
+mod wedge;
