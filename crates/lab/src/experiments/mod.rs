@@ -1,13 +1,22 @@
 //! One file per experiment; the order here is the order of the report.
 
+mod anisotropy;
 mod bouncing_sphere;
+mod disc;
+mod dwell;
 mod force_balance;
 mod incline;
 mod integrators;
+mod oscillating;
+mod peers;
 mod pinch_hold;
 mod rolling_ball;
+mod slider_circle;
+mod slider_l;
+mod slider_line;
 mod sliding_paths;
 mod smooth_sliding;
+mod stick_slip;
 mod wedging_peg;
 
 use crate::Experiment;
@@ -16,6 +25,14 @@ use crate::Experiment;
 pub fn catalogue() -> Vec<Experiment> {
     vec![
         incline::EXPERIMENT,
+        slider_line::EXPERIMENT,
+        slider_l::EXPERIMENT,
+        slider_circle::EXPERIMENT,
+        stick_slip::EXPERIMENT,
+        dwell::EXPERIMENT,
+        disc::EXPERIMENT,
+        oscillating::EXPERIMENT,
+        anisotropy::EXPERIMENT,
         bouncing_sphere::EXPERIMENT,
         rolling_ball::EXPERIMENT,
         wedging_peg::EXPERIMENT,

@@ -3,6 +3,7 @@
 //! Every name is resolved here; what cannot be built is told all at once, each fault with its line in the file.
 
 mod actuators;
+mod beds;
 mod faults;
 mod kinematics;
 mod laws;
@@ -60,6 +61,7 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
         vehicles: specs,
         shapes,
         pairs,
+        mechanisms: Vec::new(),
         actuators: table.actuators.clone(),
         environment: environment(&scenario.environment),
         integrator: integrator(scenario.integrator.kind),

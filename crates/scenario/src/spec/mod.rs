@@ -22,7 +22,7 @@ mod vehicle;
 
 pub use actuator::{Actuator, ActuatorKind, Drive, DriveMotion, JointDrive};
 pub use campaign::{Campaign, Disperse, Expect, Normal, Scalar, Uniform};
-pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw};
+pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw, Pivot};
 pub use effect::{Effect, ParamValue};
 pub use friction::{BristleFriction, Dahl, ElastoPlastic, FrictionLaw, LuGre, RegularisedCoulomb};
 pub use pose::{PoseSpec, TwistSpec};
