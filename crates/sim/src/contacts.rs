@@ -73,6 +73,10 @@ pub(crate) struct Outcome {
     pub law: Vec3,
     /// Normal part of it, N.
     pub normal_force: f64,
+    /// Normal force that bounds the friction, now and one pass earlier, N (see [`Touch::calc_pressing`]).
+    pub pressing: [f64; 2],
+    /// Passes of this step so far.
+    pub passes: u8,
     /// Deflection, rest and regime by the law.
     pub s: Vec3,
     pub rest: f64,
@@ -86,6 +90,9 @@ pub(crate) struct Outcome {
     /// Force that the solve gave both bodies, N.
     pub force: Vec3,
 }
+
+/// Steepest secant that [`Touch::calc_pressing`] believes.
+const SHORTEST_WAY: f64 = -9.0;
 
 impl Touch {
     /// Evaluates the law at the predicted relative velocity `u_new`, and draws the line for the next solve.
@@ -104,6 +111,8 @@ impl Touch {
         let mut out = Outcome {
             law: normal.force * n,
             normal_force: normal.force,
+            pressing: [self.calc_pressing(normal.force), self.out.pressing[0]],
+            passes: self.out.passes + 1,
             g: -h * (at.beta * normal.d_gap + at.theta * normal.d_rate) * nn,
             ..Outcome::default()
         };
@@ -115,7 +124,7 @@ impl Touch {
                 s_trial,
                 slip,
                 elapsed: at.elapsed,
-                normal_force: normal.force + law.normal.adhesion,
+                normal_force: out.pressing[0] + law.normal.adhesion,
                 rest: self.rest,
                 grain: self.grain,
             });
@@ -132,6 +141,21 @@ impl Touch {
         out.line = out.law + excess + out.g * (u_new - self.u - self.carried) / h;
         out.force = out.law;
         out
+    }
+
+    /// Normal force that bounds the friction in the next line, when the last one led to `normal`.
+    ///
+    /// Friction is held at its bound while a pass solves, so the passes iterate N ← F(N). In a wedge friction lifts the body
+    /// off the faces that cause it, F falls steeper than −1, and the iteration would jump between pressing and not touching
+    /// for ever: a ball fell through a corner of three planes. From the third pass on the secant of F says how far to go; it
+    /// shortens the way and never lengthens it.
+    fn calc_pressing(&self, normal: f64) -> f64 {
+        let [last, before] = self.out.pressing;
+        if self.out.passes < 2 || last == before {
+            return normal;
+        }
+        let slope = (normal - self.out.normal_force) / (last - before);
+        last + (normal - last) / (1.0 - slope.clamp(SHORTEST_WAY, 0.0))
     }
 
     /// −∂f/∂u' of the friction force, or what stands in for it where the slip force turned (see [`Self::eval`]).

@@ -24,3 +24,4 @@ mod stiff;
 mod support;
 mod symmetry;
 mod torque_free;
+mod wedge;
