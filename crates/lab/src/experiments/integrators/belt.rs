@@ -27,8 +27,7 @@ fn build(integrator: Integrator, step: f64, stiffness: f64, damping: f64) -> Res
     bench.add_shape(Some(block), GANTRY_BLOCK, Shape::Cuboid { half_extents: BLOCK.into() });
     bench.add_shape(Some(belt), 0, Shape::HalfSpace);
     let [mu_static, mu_kinetic] = LEVELS;
-    let bristle =
-        Bristle { mu_static, mu_kinetic, stribeck_speed: 0.0, stiffness, damping, ..Bristle::default() };
+    let bristle = Bristle { mu_static, mu_kinetic, stribeck_speed: 0.0, stiffness, damping, ..Bristle::default() };
     bench.pair("belt", "block", contact_law(stiffness, damping, bristle));
     bench.add_spring("spring", GANTRY[0], SPRING, 0.0);
     let mut rig = bench.build()?;
