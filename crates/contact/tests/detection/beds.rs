@@ -1,5 +1,7 @@
 //! Beds: areas, moments of area, and the foundation that their samples make together.
 
+#![allow(clippy::print_stdout)]
+
 use crate::support::*;
 use contact::{Bed, ContactError};
 use std::f64::consts::{PI, TAU};

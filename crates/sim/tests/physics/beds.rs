@@ -151,7 +151,7 @@ fn disc_stops_after_the_time_of_its_coulomb_friction_with_every_integrator() {
         let steps = 200;
         (0..steps).for_each(|_| world.advance().unwrap());
         let speed = world.kinematics(0).vel[0].lin.x;
-        let expected = (0.1 - MU * GRAVITY * 1e-4 * f64::from(steps));
+        let expected = 0.1 - MU * GRAVITY * 1e-4 * f64::from(steps);
         println!("{integrator:?}: {speed:.6} m/s after {steps} steps, Coulomb {expected:.6}");
         assert!((speed - expected).abs() < 2e-4);
     }
