@@ -5,6 +5,7 @@
 
 use crate::analytic::{Raw, ball_ball, plane_ball, plane_cuboid, swapped};
 use crate::convex::{Convex, Core};
+use crate::docking::{Body, DockingBuffer};
 use crate::manifold::{ManifoldBuffer, mix};
 use crate::primitive::{PrimitiveBuffer, convex_ball};
 use crate::reduce::reduce;
@@ -23,6 +24,7 @@ pub struct Detector {
     raw: Vec<Raw>,
     nearest: Vec<f64>,
     primitives: PrimitiveBuffer,
+    docking: DockingBuffer,
     manifolds: ManifoldBuffer,
     narrow: u64,
 }
@@ -54,6 +56,7 @@ impl Detector {
             raw: Vec::with_capacity(64),
             nearest: Vec::new(),
             primitives: PrimitiveBuffer::default(),
+            docking: DockingBuffer::default(),
             manifolds: ManifoldBuffer::default(),
             narrow: 0,
         }
@@ -167,6 +170,12 @@ impl Detector {
                 }
                 return;
             }
+            (Solid::Docking(..), _) | (_, Solid::Docking(..)) => {
+                if let (Some(a), Some(b)) = (Body::of(&a.solid, frame_a), Body::of(&b.solid, frame_b)) {
+                    return self.docking.add_points(&a, &b, margin, &mut self.raw);
+                }
+                return self.ask_parry((a, frame_a), (b, frame_b), margin, ManifoldBuffer::add_points);
+            }
             _ => return self.ask_parry((a, frame_a), (b, frame_b), margin, ManifoldBuffer::add_points),
         };
         if one.gap < margin {
@@ -204,6 +213,6 @@ fn ball_of(solid: &Solid) -> Ball {
 fn twin_of<'a>(solid: &'a Solid, ball: &'a Ball) -> (&'a dyn Shape, Mat3) {
     match solid {
         Solid::Ball(_) => (ball, Mat3::identity()),
-        Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Other(twin) => (&*twin.shape, twin.turn),
+        Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Docking(_, twin) | Solid::Other(twin) => (&*twin.shape, twin.turn),
     }
 }

@@ -32,6 +32,7 @@ mod axes;
 mod convex;
 mod cylinder;
 mod detector;
+mod docking;
 mod error;
 mod glob;
 mod manifold;
@@ -45,6 +46,7 @@ mod scene;
 mod shape;
 
 pub use detector::Detector;
+pub use docking::{Docking, DockingDispatcher, DockingShape, Tessellation};
 pub use error::ContactError;
 pub use glob::glob_matches;
 pub use normal::{Normal, NormalForce, NormalLaw};

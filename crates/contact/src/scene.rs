@@ -2,6 +2,7 @@
 
 use crate::convex::{Convex, Core};
 use crate::cylinder::Cylinder;
+use crate::docking::{Sheet, Tessellation, rank_of};
 use crate::{Collider, ContactError, Shape};
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::shape::SharedShape;
@@ -30,6 +31,7 @@ pub(crate) enum Solid {
     Ball(f64),
     Primitive(Convex, Twin),
     HalfSpace(Twin),
+    Docking(Sheet, Twin),
     Other(Twin),
 }
 
@@ -122,6 +124,14 @@ fn add_parts(collider: &Collider, shape: &Shape, pose: &Pose, parts: &mut Vec<Pa
             .iter()
             .try_for_each(|(child_pose, child)| add_parts(collider, child, &(pose * child_pose), parts));
     }
+    if let Shape::Docking(docking) = shape {
+        for sheet in docking.sheets(rank_of(&collider.name)) {
+            let (half, centre) = sheet.bounds();
+            let solid = Solid::Docking(sheet, sheet_twin(collider, &sheet)?);
+            parts.push(Part { frame_bp: Frame::from(pose), solid, half, centre });
+        }
+        return Ok(());
+    }
     let solid = solid_of(collider, shape)?;
     let (half, centre) = bounds(&solid);
     parts.push(Part { frame_bp: Frame::from(pose), solid, half, centre });
@@ -159,9 +169,19 @@ fn solid_of(collider: &Collider, shape: &Shape) -> Result<Solid, ContactError> {
                 triangles: triangles.len(),
             })?))
         }
-        // Its children are pieces of their own; none is left.
-        Shape::Compound(_) => Solid::Ball(0.0),
+        // Their pieces are parts of their own; none is left.
+        Shape::Compound(_) | Shape::Docking(_) => Solid::Ball(0.0),
     })
+}
+
+/// A sheet in triangles, for what knows no other answer.
+fn sheet_twin(collider: &Collider, sheet: &Sheet) -> Result<Twin, ContactError> {
+    let mut mesh = Tessellation::default();
+    mesh.add(sheet);
+    let triangles = mesh.triangles.len();
+    let shape = SharedShape::trimesh(mesh.vertices.iter().map(to_parry).collect(), mesh.triangles);
+    let failed = |_| ContactError::DegenerateMesh { collider: collider.name.clone(), triangles };
+    shape.map(Twin::new).map_err(failed)
 }
 
 fn bounds(solid: &Solid) -> (Vec3, Vec3) {
@@ -169,6 +189,7 @@ fn bounds(solid: &Solid) -> (Vec3, Vec3) {
         Solid::Ball(radius) => (Vec3::repeat(*radius), Vec3::zeros()),
         Solid::Primitive(convex, _) => (convex.half_extents(), Vec3::zeros()),
         Solid::HalfSpace(_) => (Vec3::repeat(f64::INFINITY), Vec3::zeros()),
+        Solid::Docking(sheet, _) => sheet.bounds(),
         Solid::Other(twin) => {
             let aabb = twin.shape.compute_local_aabb();
             (from_parry(aabb.half_extents()), from_parry(aabb.center()))

@@ -1,6 +1,6 @@
 //! Shapes as a file or a builder describes them, and their checks.
 
-use crate::ContactError;
+use crate::{ContactError, Docking};
 use spatial::{Pose, Vec3};
 
 /// A collision shape in its own frame S; lengths in m.
@@ -44,6 +44,8 @@ pub enum Shape {
         /// Corners of each triangle, counter-clockwise seen from outside (turned if a closed mesh is inside out).
         triangles: Vec<[u32; 3]>,
     },
+    /// A drogue, bore, capture ring or guide petal.
+    Docking(Docking),
     /// Several shapes, each with its pose in S.
     Compound(Vec<(Pose, Shape)>),
 }
@@ -82,6 +84,7 @@ impl Collider {
                 self.check_size("half length", *half_length)
             }
             Shape::HalfSpace => Ok(()),
+            Shape::Docking(docking) => docking.check(&self.name),
             Shape::ConvexHull { vertices } => {
                 self.check_vertices(vertices)?;
                 self.check_span(vertices)
