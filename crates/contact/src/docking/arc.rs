@@ -70,6 +70,23 @@ impl Scan {
 /// A sample: place, distance, slope.
 type Sample = (f64, f64, f64);
 
+/// Something along which a distance is sampled.
+pub(crate) trait Path {
+    /// First place, span, and how much the distance may change over a unit of it at most; whether it closes.
+    fn extent(&self) -> (f64, f64, f64, bool);
+
+    /// Direction and distance at `u`, and the distance's slope.
+    fn sample(&self, target: &Body<'_>, u: f64) -> (Near, f64);
+
+    /// Minima of the distance from `target` that are below `reach`, in the order of `u`.
+    fn scan(&self, target: &Body<'_>, reach: f64) -> Scan
+    where
+        Self: Sized,
+    {
+        scan(self, target, reach)
+    }
+}
+
 impl Curve {
     /// From one point to another.
     pub(crate) fn segment(from: Vec3, to: Vec3) -> Self {
@@ -105,83 +122,90 @@ impl Curve {
         c * self.arms[1] - s * self.arms[0]
     }
 
-    #[inline]
-    fn sample(&self, target: &Body<'_>, u: f64) -> Sample {
-        let near = target.nearest(&self.point(u));
-        (u, near.distance, near.normal.dot(&self.tangent(u)))
-    }
+}
 
-    /// Minima of the distance from `target` that are below `reach`, in the order of `u`.
-    pub(crate) fn scan(&self, target: &Body<'_>, reach: f64) -> Scan {
+impl Path for Curve {
+    fn extent(&self) -> (f64, f64, f64, bool) {
         let (from, span) = self.arc.unwrap_or((0.0, 1.0));
-        let step = span / COARSE as f64;
-        let first = self.sample(target, from);
-        let start = Minimum { u: from, near: Near { normal: Vec3::z(), distance: f64::INFINITY } };
-        let mut scan =
-            Scan { minima: [start; MOST], count: 0, far: first.1, nearest: Minimum { u: from, ..start }, ends: first.1 };
-        let (mut best, mut before) = (first, first);
-        for i in 1..=COARSE {
-            let closes = self.is_closed() && i == COARSE;
-            let sample = self.sample(target, if closes { from } else { from + step * i as f64 });
-            let after = if closes { (from + span, sample.1, sample.2) } else { sample };
-            // No point between two samples is nearer than the mean of both less half the way between them.
-            if 0.5 * (before.1 + after.1 - step * self.speed()) < reach {
-                self.scan_finely(target, (before, after), &mut scan);
-            }
-            scan.far = scan.far.max(after.1);
-            if after.1 < best.1 {
-                best = after;
-            }
-            before = after;
-        }
-        scan.ends = scan.ends.min(before.1);
-        scan.nearest = Minimum { u: best.0, near: target.nearest(&self.point(best.0)) };
-        scan
+        (from, span, self.arms[0].norm(), self.is_closed())
     }
 
-    fn speed(&self) -> f64 {
-        self.arms[0].norm()
+    #[inline]
+    fn sample(&self, target: &Body<'_>, u: f64) -> (Near, f64) {
+        let near = target.nearest(&self.point(u));
+        (near, near.normal.dot(&self.tangent(u)))
     }
+}
 
-    fn scan_finely(&self, target: &Body<'_>, (from, to): (Sample, Sample), scan: &mut Scan) {
-        let mut before = from;
-        for i in 1..=FINE {
-            let after = if i == FINE {
-                to
-            } else {
-                self.sample(target, from.0 + (to.0 - from.0) * i as f64 / FINE as f64)
-            };
-            if before.2 < 0.0 && after.2 >= 0.0 {
-                let u = self.find_root(target, before, after);
-                scan.push(Minimum { u, near: target.nearest(&self.point(u)) });
-            }
-            before = after;
+fn sample(path: &impl Path, target: &Body<'_>, u: f64) -> Sample {
+    let (near, slope) = path.sample(target, u);
+    (u, near.distance, slope)
+}
+
+fn minimum(path: &impl Path, target: &Body<'_>, u: f64) -> Minimum {
+    Minimum { u, near: path.sample(target, u).0 }
+}
+
+fn scan(path: &impl Path, target: &Body<'_>, reach: f64) -> Scan {
+    let (from, span, speed, is_closed) = path.extent();
+    let step = span / COARSE as f64;
+    let first = sample(path, target, from);
+    let start = Minimum { u: from, near: Near { normal: Vec3::z(), distance: f64::INFINITY } };
+    let mut scan = Scan { minima: [start; MOST], count: 0, far: first.1, nearest: start, ends: first.1 };
+    let (mut best, mut before) = (first, first);
+    for i in 1..=COARSE {
+        let u = from + step * i as f64;
+        let after = if is_closed && i == COARSE { (u, first.1, first.2) } else { sample(path, target, u) };
+        // No place between two samples is nearer than the mean of both less half the way between them.
+        if 0.5 * (before.1 + after.1 - step * speed) < reach {
+            scan_finely(path, target, (before, after), &mut scan);
+        }
+        scan.far = scan.far.max(after.1);
+        if after.1 < best.1 {
+            best = after;
+        }
+        before = after;
+    }
+    scan.ends = scan.ends.min(before.1);
+    scan.nearest = minimum(path, target, best.0);
+    scan
+}
+
+fn scan_finely(path: &impl Path, target: &Body<'_>, (from, to): (Sample, Sample), scan: &mut Scan) {
+    let mut before = from;
+    for i in 1..=FINE {
+        let u = from.0 + (to.0 - from.0) * i as f64 / FINE as f64;
+        let after = if i == FINE { to } else { sample(path, target, u) };
+        if before.2 < 0.0 && after.2 >= 0.0 {
+            let u = find_root(&|u| path.sample(target, u).1, (before.0, before.2), (after.0, after.2));
+            scan.push(minimum(path, target, u));
+        }
+        before = after;
+    }
+}
+
+/// Where a slope passes from − at `a` to + at `b`.
+pub(crate) fn find_root(slope: &dyn Fn(f64) -> f64, a: (f64, f64), b: (f64, f64)) -> f64 {
+    let ((mut a, mut fa), (mut b, mut fb)) = (a, b);
+    let mut last = 0;
+    for _ in 0..STEPS {
+        let c = (a * fb - b * fa) / (fb - fa);
+        if !(c > a && c < b) {
+            break;
+        }
+        let fc = slope(c);
+        if fc < 0.0 {
+            (a, fa) = (c, fc);
+            fb *= if last < 0 { 0.5 } else { 1.0 };
+            last = -1;
+        } else {
+            (b, fb) = (c, fc);
+            fa *= if last > 0 { 0.5 } else { 1.0 };
+            last = 1;
+        }
+        if fc == 0.0 {
+            return c;
         }
     }
-
-    /// Where the slope passes from − to +.
-    fn find_root(&self, target: &Body<'_>, a: Sample, b: Sample) -> f64 {
-        let (mut a, mut fa, mut b, mut fb) = (a.0, a.2, b.0, b.2);
-        let mut last = 0;
-        for _ in 0..STEPS {
-            let c = (a * fb - b * fa) / (fb - fa);
-            if !(c > a && c < b) {
-                break;
-            }
-            let fc = self.sample(target, c).2;
-            if fc < 0.0 {
-                (a, fa) = (c, fc);
-                fb *= if last < 0 { 0.5 } else { 1.0 };
-                last = -1;
-            } else {
-                (b, fb) = (c, fc);
-                fa *= if last > 0 { 0.5 } else { 1.0 };
-                last = 1;
-            }
-            if fc == 0.0 {
-                return c;
-            }
-        }
-        if -fa < fb { a } else { b }
-    }
+    if -fa < fb { a } else { b }
 }

@@ -21,11 +21,11 @@
 //! and one-dimensional minimisations of [`pair`]; hulls and meshes through parry3d and a tessellation, with facets.
 //! [`DockingShape`] is the same as a custom shape for parry3d, and [`DockingDispatcher`] answers its queries.
 //!
-//! Limits: two curved sheets whose convex sides meet away from all of their rims and edges do not see each other there.
-//! Along an arc that fits another exactly over part of its length, the place of the deepest point is left to round-off.
+//! Limits: along an arc that fits another exactly over part of its length, the place of the deepest point is left to round-off.
 
 mod arc;
 mod body;
+mod face;
 mod pair;
 mod parry;
 mod seat;

@@ -1,8 +1,8 @@
 //! The points of a pair of which at least one is a docking shape.
 //!
 //! Candidates, in this order: points of each body (a ball's centre, a capsule's ends, corners) against the other as a
-//! whole; then the local minima along each body's curves (rims, edges, axes) against the other as a whole. Each is exact,
-//! and there are more than needed: as a capsule slides out of a bore, its end, its side and the rim come to mean one place.
+//! whole; then the local minima along each body's curves (rims, edges, axes) against the other as a whole; last those of two
+//! curved sides. Each is exact, and there are more than needed: as a capsule slides out of a bore, its end, its side and the rim come to mean one place.
 //!
 //! So that nothing jumps there, what an earlier candidate already holds is taken off a later one nearby:
 //!
@@ -12,8 +12,9 @@
 //! off with nothing. For the same reason a minimum along an open curve counts by how much it is deeper than the curve's
 //! ends, which are points of their own. Elsewhere, gaps are those of the surfaces, to round-off.
 
-use super::arc::{Curve, Minimum, Scan};
+use super::arc::{Curve, Minimum, Path, Scan};
 use super::body::{Body, Kind};
+use super::face::Face;
 use super::seat::{ROUND, Seat};
 use super::sheet::{Near, unit};
 use crate::analytic::{Raw, swapped};
@@ -108,6 +109,26 @@ impl DockingBuffer {
         self.add_body_points((lead, other, true), 8, margin);
         self.add_body_curves((lead, other, true), 16, margin);
         self.add_body_curves((other, lead, false), 32, margin);
+        self.add_faces(lead, other, margin);
+    }
+
+    /// Where the curved sides of two sheets bulge towards each other.
+    fn add_faces(&mut self, lead: &Body<'_>, other: &Body<'_>, margin: f64) {
+        let (Some(face), Some(_)) = (Face::of(lead), Face::of(other)) else { return };
+        let question = Question { owner_leads: true, owner_radius: lead.radius, target: other, source: 48, margin };
+        let scan = face.scan(other, margin + question.radii());
+        for minimum in scan.minima() {
+            let spot = face.spot(other, minimum.u);
+            let label = (BINS * (minimum.u / TAU).rem_euclid(1.0)) as u32;
+            let mut candidate = question.candidate(&spot.point, &spot.near, label);
+            if candidate.gap < 0.0 {
+                let beyond_edges = if face.extent().3 { f64::INFINITY } else { scan.ends - spot.near.distance };
+                candidate.gap = candidate.gap.max(-spot.prominence.min(beyond_edges));
+            }
+            if face.is_flat_at(&spot) && candidate.gap != 0.0 {
+                self.push(candidate, margin);
+            }
+        }
     }
 
     fn add_body_points(&mut self, (owner, target, owner_leads): (&Body<'_>, &Body<'_>, bool), first: u32, margin: f64) {
