@@ -2,8 +2,8 @@
 //!
 //! With g(u) the distance of the curve's point c(u) and n its gradient, g′ = n · c′ is exact. A distance is semiconcave, so
 //! its minima along a curve are smooth points, where g′ passes from − to +. It also changes by no more than the length of
-//! the curve between two samples, so stretches that cannot come near are passed over, and the rest is sampled finely and
-//! bracketed; the bracket is closed by the Illinois variant of regula falsi (Dowell and Jarratt 1971). A cold start every
+//! the curve between two samples, so stretches that cannot come near are passed over; the rest is sampled finely, more so
+//! where the slopes leave room for a hidden pair of extrema, and bracketed; the bracket is closed by the Illinois variant of regula falsi (Dowell and Jarratt 1971). A cold start every
 //! time, no history, no allocation.
 
 use super::body::Body;
@@ -15,6 +15,9 @@ use std::f64::consts::TAU;
 const COARSE: usize = 24;
 /// Fine intervals in each that may come near.
 const FINE: usize = 6;
+/// Halvings of an interval whose slopes leave room for two extrema, and most of them in one scan.
+const DEPTH: usize = 6;
+const BUDGET: usize = 600;
 /// Most steps of the root finding; a dozen are usual.
 const STEPS: usize = 60;
 /// Most minima of one curve.
@@ -45,6 +48,7 @@ pub(crate) struct Minimum {
 pub(crate) struct Scan {
     minima: [Minimum; MOST],
     count: usize,
+    budget: usize,
     /// Largest distance of the coarse samples, m.
     pub(crate) far: f64,
     /// The nearest of the coarse samples.
@@ -151,7 +155,7 @@ fn scan(path: &impl Path, target: &Body<'_>, reach: f64) -> Scan {
     let step = span / COARSE as f64;
     let first = sample(path, target, from);
     let start = Minimum { u: from, near: Near { normal: Vec3::z(), distance: f64::INFINITY } };
-    let mut scan = Scan { minima: [start; MOST], count: 0, far: first.1, nearest: start, ends: first.1 };
+    let mut scan = Scan { minima: [start; MOST], count: 0, budget: BUDGET, far: first.1, nearest: start, ends: first.1 };
     let (mut best, mut before) = (first, first);
     for i in 1..=COARSE {
         let u = from + step * i as f64;
@@ -176,11 +180,36 @@ fn scan_finely(path: &impl Path, target: &Body<'_>, (from, to): (Sample, Sample)
     for i in 1..=FINE {
         let u = from.0 + (to.0 - from.0) * i as f64 / FINE as f64;
         let after = if i == FINE { to } else { sample(path, target, u) };
-        if before.2 < 0.0 && after.2 >= 0.0 {
-            let u = find_root(&|u| path.sample(target, u).1, (before.0, before.2), (after.0, after.2));
-            scan.push(minimum(path, target, u));
-        }
+        split(path, target, (before, after), DEPTH, scan);
         before = after;
+    }
+}
+
+/// Notes the minimum between two samples; halves the stretch where there may be more extrema than its ends tell.
+fn split(path: &impl Path, target: &Body<'_>, (a, b): (Sample, Sample), depth: usize, scan: &mut Scan) {
+    if depth > 0 && scan.budget > 0 && may_hide(path.extent().2, &a, &b) {
+        scan.budget -= 1;
+        let middle = sample(path, target, 0.5 * (a.0 + b.0));
+        split(path, target, (a, middle), depth - 1, scan);
+        return split(path, target, (middle, b), depth - 1, scan);
+    }
+    if a.2 < 0.0 && b.2 >= 0.0 {
+        let u = find_root(&|u| path.sample(target, u).1, (a.0, a.2), (b.0, b.2));
+        scan.push(minimum(path, target, u));
+    }
+}
+
+/// Whether a minimum may lie between two samples that their slopes do not tell of. A distance d bends upwards by at most
+/// the speed squared over d (an arc's own bend adds as much again at most where it is not much smaller than d), so a
+/// slope does not rise through zero to more than that times the stretch.
+fn may_hide(speed: f64, a: &Sample, b: &Sample) -> bool {
+    let rise = 2.0 * speed * speed / a.1.min(b.1).max(f64::MIN_POSITIVE) * (b.0 - a.0);
+    let (falls, rises) = (-a.2 < rise, b.2 < rise);
+    match (a.2 < 0.0, b.2 < 0.0) {
+        (true, true) => falls,
+        (false, false) => rises,
+        (true, false) => falls && rises,
+        (false, true) => false,
     }
 }
 

@@ -6,11 +6,11 @@
 //!
 //! So that nothing jumps there, what an earlier candidate already holds is taken off a later one nearby:
 //!
-//!   δᵢ ← δᵢ − Σ κ(|xᵢ − xⱼ| / D) max(0, nᵢ·nⱼ) δⱼ,   κ(t) = (1 − t²)² for t < 1
+//!   δᵢ ← δᵢ − Σ κ(|xᵢ − xⱼ| / D) max(0, nᵢ·nⱼ) δⱼ,   κ(t) = (1 − t⁴)² for t < 1
 //!
-//! D: half the sum of the rounding radii. Two that coincide count once, and a point that comes off an end comes
-//! off with nothing. For the same reason a minimum along an open curve counts by how much it is deeper than the curve's
-//! ends, which are points of their own. Elsewhere, gaps are those of the surfaces, to round-off.
+//! D: the sum of the rounding radii. Two that coincide count once, and a point that comes off an end comes
+//! off with nothing. Against the points and curves of its own body, a minimum along a curve with ends or on a side counts by
+//! how much it is deeper than those instead, so that what lies flush is held at its corners and not at a place of chance. Elsewhere, gaps are those of the surfaces, to round-off.
 
 use super::arc::{Curve, Minimum, Path, Scan};
 use super::body::{Body, Kind};
@@ -27,11 +27,21 @@ const SAME: f64 = 1.0 - 1e-9;
 const SECONDARY: u32 = 16;
 const BINS: f64 = 16.0;
 
+/// What a candidate comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    Point,
+    Curve,
+    Face,
+}
+
 /// A candidate, in the leading body's frame.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     source: u32,
     label: u32,
+    rank: Rank,
+    owner_leads: bool,
     /// Midway between the two surfaces.
     middle: Vec3,
     /// From the leading body to the other.
@@ -45,12 +55,24 @@ pub(crate) struct DockingBuffer {
     found: Vec<Candidate>,
 }
 
+impl Candidate {
+    /// Whether it may see the same as an earlier one. Places of one seat differ; what stands out from its own body's
+    /// points and curves has been measured against them.
+    fn shares_with(&self, earlier: &Self) -> bool {
+        if self.source == earlier.source {
+            return self.label >= SECONDARY && earlier.label >= SECONDARY;
+        }
+        self.owner_leads != earlier.owner_leads || self.rank == earlier.rank
+    }
+}
+
 /// Who owns a curve or point, and what it is held against.
 struct Question<'a> {
     owner_leads: bool,
     owner_radius: f64,
     target: &'a Body<'a>,
     source: u32,
+    rank: Rank,
     margin: f64,
 }
 
@@ -63,7 +85,7 @@ impl Question<'_> {
         let gap = near.distance - self.radii();
         let toward = if self.owner_leads { -near.normal } else { near.normal };
         let middle = at - (self.owner_radius + 0.5 * gap) * near.normal;
-        Candidate { source: self.source, label, middle, normal: toward, gap }
+        Candidate { source: self.source, label, rank: self.rank, owner_leads: self.owner_leads, middle, normal: toward, gap }
     }
 }
 
@@ -82,7 +104,7 @@ impl DockingBuffer {
             &Body { frame: relative, ..*other },
             margin,
         );
-        self.share(0.5 * (lead.scale() + other.scale()));
+        self.share(lead.scale() + other.scale());
         out.extend(self.found.iter().map(|c| {
             let raw = Raw {
                 feature: u64::from(c.source) << 32 | u64::from(c.label),
@@ -115,7 +137,8 @@ impl DockingBuffer {
     /// Where the curved sides of two sheets bulge towards each other.
     fn add_faces(&mut self, lead: &Body<'_>, other: &Body<'_>, margin: f64) {
         let (Some(face), Some(_)) = (Face::of(lead), Face::of(other)) else { return };
-        let question = Question { owner_leads: true, owner_radius: lead.radius, target: other, source: 48, margin };
+        let question =
+            Question { owner_leads: true, owner_radius: lead.radius, target: other, source: 48, rank: Rank::Face, margin };
         let scan = face.scan(other, margin + question.radii());
         for minimum in scan.minima() {
             let spot = face.spot(other, minimum.u);
@@ -134,7 +157,7 @@ impl DockingBuffer {
     fn add_body_points(&mut self, (owner, target, owner_leads): (&Body<'_>, &Body<'_>, bool), first: u32, margin: f64) {
         let (points, count) = owner.points();
         for (source, p) in (first..).zip(&points[..count]) {
-            let question = Question { owner_leads, owner_radius: owner.radius, target, source, margin };
+            let question = Question { owner_leads, owner_radius: owner.radius, target, source, rank: Rank::Point, margin };
             self.add_point(p, &question);
         }
     }
@@ -142,7 +165,7 @@ impl DockingBuffer {
     fn add_body_curves(&mut self, (owner, target, owner_leads): (&Body<'_>, &Body<'_>, bool), first: u32, margin: f64) {
         for i in 0.. {
             let Some((curve, owner_radius)) = owner.curve(i) else { return };
-            let question = Question { owner_leads, owner_radius, target, source: first + i as u32, margin };
+            let question = Question { owner_leads, owner_radius, target, source: first + i as u32, rank: Rank::Curve, margin };
             match curve {
                 Some(curve) if curve.is_closed() => self.add_circle(&curve, &question),
                 Some(curve) => self.add_open(&curve, &question),
@@ -229,7 +252,7 @@ impl DockingBuffer {
             let mut own = self.found[i];
             let mut same = 0.0_f64;
             let mut held = 0.0;
-            for other in self.found[..kept].iter().filter(|other| other.source != own.source) {
+            for other in self.found[..kept].iter().filter(|other| own.shares_with(other)) {
                 let share = coincidence(&own, other, reach);
                 same = same.max(share);
                 held += share * (-other.gap).max(0.0);
@@ -249,7 +272,7 @@ impl DockingBuffer {
 /// How much two candidates are one: 1 in the same place with the same normal, 0 further apart than `reach`.
 fn coincidence(a: &Candidate, b: &Candidate, reach: f64) -> f64 {
     let t2 = (a.middle - b.middle).norm_squared() / (reach * reach);
-    if t2 >= 1.0 { 0.0 } else { (1.0 - t2) * (1.0 - t2) * a.normal.dot(&b.normal).max(0.0) }
+    if t2 >= 1.0 { 0.0 } else { (1.0 - t2 * t2).powi(2) * a.normal.dot(&b.normal).max(0.0) }
 }
 
 /// The deepest place round a curve: the deepest minimum, or of a curve without any the deepest sample.

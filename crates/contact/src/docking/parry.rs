@@ -27,6 +27,8 @@ use spatial::{Frame, Vec3};
 
 /// Steps of a ray towards a surface; each covers the distance to it.
 const RAY_STEPS: usize = 256;
+/// Bits of a parry feature that are its number.
+const CODE: u32 = 0x3fff_ffff;
 /// Distance at which a ray has arrived, m.
 const ARRIVED: f64 = 1e-12;
 
@@ -297,9 +299,9 @@ impl<M: Default + Clone, C: Default + Copy> PersistentQueryDispatcher<M, C> for 
             let (p1, p2) = witnesses(pos12, raw);
             manifold.local_n1 = to_parry(&raw.normal);
             manifold.local_n2 = pos12.rotation.inverse() * -manifold.local_n1;
-            let id = PackedFeatureId::face(raw.feature as u32 & 0x0fff_ffff);
+            let id = PackedFeatureId::face(raw.feature as u32 & CODE);
             manifold.points.clear();
-            manifold.points.push(TrackedContact::new(p1, p2, id, PackedFeatureId::face((raw.feature >> 32) as u32), raw.gap));
+            manifold.points.push(TrackedContact::new(p1, p2, id, PackedFeatureId::face((raw.feature >> 32) as u32 & CODE), raw.gap));
         }
         Ok(())
     }

@@ -2,10 +2,10 @@
 //!
 //! The outline of the rounded meridian, a stadium, is swept round; a sector ends in half a stadium turned about its edge.
 
-use super::sheet::Sheet;
+use super::sheet::{Meridian, Sheet};
 use super::Docking;
 use spatial::Vec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// Steps of half a turn of the rounding.
 const ROUNDING: usize = 6;
@@ -59,7 +59,7 @@ impl Tessellation {
         for i in 0..last {
             for j in 0..n {
                 let at = |i: usize, j: usize| (first + (i % count) * n + j % n) as u32;
-                let quad = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                let quad = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
                 self.add_triangle([quad[0], quad[1], quad[2]]);
                 self.add_triangle([quad[0], quad[2], quad[3]]);
             }
@@ -75,37 +75,23 @@ impl Tessellation {
     }
 }
 
-/// The stadium about the meridian as (ρ, z), clockwise with ρ to the right, which faces outward when swept by +θ. On a
-/// floor the half about the axis is left out.
+/// The stadium about the meridian as (ρ, z), clockwise with ρ to the right. What would lie beyond the axis is laid on it.
 fn outline(sheet: &Sheet) -> Vec<[f64; 2]> {
     let [p, q] = sheet.ends;
-    let along = if p == q { 0.5 * PI } else { (q.z - p.z).atan2(q.rho - p.rho) };
-    let mut out = Vec::new();
-    for (end, start) in [(q, along + 0.5 * PI), (p, along - 0.5 * PI)] {
-        for i in 0..=ROUNDING {
-            let angle = start - PI * i as f64 / ROUNDING as f64;
-            let rho = end.rho + sheet.radius * angle.cos();
-            out.push([rho.max(0.0), end.z + sheet.radius * angle.sin()]);
-        }
-    }
+    let at = |end: Meridian, angle: f64| [(end.rho + sheet.radius * angle.cos()).max(0.0), end.z + sheet.radius * angle.sin()];
+    let angle = |i: usize| -PI * i as f64 / ROUNDING as f64;
     if p == q {
-        out.truncate(ROUNDING);
-        out = (0..2 * ROUNDING)
-            .map(|i| {
-                let angle = -TAU * i as f64 / (2 * ROUNDING) as f64;
-                [p.rho + sheet.radius * angle.cos(), p.z + sheet.radius * angle.sin()]
-            })
-            .collect();
+        return (0..2 * ROUNDING).map(|i| at(p, angle(i))).collect();
     }
-    out
+    let along = (q.z - p.z).atan2(q.rho - p.rho);
+    let half = |end, start: f64| (0..=ROUNDING).map(move |i| at(end, start + angle(i)));
+    half(q, along + 0.5 * PI).chain(half(p, along - 0.5 * PI)).collect()
 }
 
 /// The stadium at a sector's edge, narrowed and moved out along the azimuth by the sine of `tilt`.
 fn end_ring(sheet: &Sheet, azimuth: f64, tilt: f64) -> Vec<Vec3> {
-    let [p, q] = sheet.ends;
     let thin = Sheet { radius: sheet.radius * tilt.cos().max(0.0), ..*sheet };
     let beyond = sheet.radius * tilt.sin() * Vec3::new(-azimuth.sin(), azimuth.cos(), 0.0);
-    let _ = (p, q);
     outline(&thin).iter().map(|o| turned(azimuth, o[0], o[1]) + beyond).collect()
 }
 

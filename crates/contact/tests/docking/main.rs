@@ -8,3 +8,4 @@ mod seats;
 mod smooth;
 mod support;
 mod symmetry;
+

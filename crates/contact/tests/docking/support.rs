@@ -1,7 +1,7 @@
 //! Short words for docking shapes and pairs of them.
 
 pub use contact::{Collider, ContactPoint, Detector, Docking, Scene, Shape};
-pub use spatial::{Frame, Mat3, Pose, Vec3};
+pub use spatial::{Frame, Pose, Vec3};
 
 pub fn cone() -> Docking {
     Docking::InnerCone { half_angle: 0.7, depth: 0.14, throat_radius: 0.02, wall: 0.01 }
