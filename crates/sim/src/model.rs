@@ -320,6 +320,7 @@ fn calc_bounding_radius(shape: &contact::Shape) -> f64 {
         Shape::Cylinder { radius, half_length } => radius.hypot(*half_length),
         Shape::Capsule { radius, half_length } => radius + half_length,
         Shape::HalfSpace => 0.0,
+        Shape::Docking(docking) => docking.calc_bounding_radius(),
         Shape::ConvexHull { vertices } | Shape::TriMesh { vertices, .. } => farthest(vertices),
         Shape::Compound(parts) => {
             parts.iter().map(|(pose, s)| pose.translation.vector.norm() + calc_bounding_radius(s)).fold(0.0, f64::max)

@@ -15,9 +15,9 @@ use std::f64::consts::TAU;
 const COARSE: usize = 24;
 /// Fine intervals in each that may come near.
 const FINE: usize = 6;
-/// Halvings of an interval whose slopes leave room for two extrema, and most of them in one scan.
-const DEPTH: usize = 6;
-const BUDGET: usize = 600;
+/// Halvings of an interval of a curve whose slopes leave room for two extrema, and most of them in one scan.
+const DEPTH: usize = 3;
+const BUDGET: usize = 1000;
 /// Most steps of the root finding; a dozen are usual.
 const STEPS: usize = 60;
 /// Most minima of one curve.
@@ -82,6 +82,9 @@ pub(crate) trait Path {
     /// Direction and distance at `u`, and the distance's slope.
     fn sample(&self, target: &Body<'_>, u: f64) -> (Near, f64);
 
+    /// How often an interval may be halved where its slopes leave room for two extrema.
+    fn halvings(&self) -> usize;
+
     /// Minima of the distance from `target` that are below `reach`, in the order of `u`.
     fn scan(&self, target: &Body<'_>, reach: f64) -> Scan
     where
@@ -134,6 +137,10 @@ impl Path for Curve {
         (from, span, self.arms[0].norm(), self.is_closed())
     }
 
+    fn halvings(&self) -> usize {
+        DEPTH
+    }
+
     #[inline]
     fn sample(&self, target: &Body<'_>, u: f64) -> (Near, f64) {
         let near = target.nearest(&self.point(u));
@@ -180,7 +187,7 @@ fn scan_finely(path: &impl Path, target: &Body<'_>, (from, to): (Sample, Sample)
     for i in 1..=FINE {
         let u = from.0 + (to.0 - from.0) * i as f64 / FINE as f64;
         let after = if i == FINE { to } else { sample(path, target, u) };
-        split(path, target, (before, after), DEPTH, scan);
+        split(path, target, (before, after), path.halvings(), scan);
         before = after;
     }
 }

@@ -83,6 +83,11 @@ impl Path for Face {
         (from, span, self.widest(), self.half_sector.is_none())
     }
 
+    /// None: each sample is a search of its own.
+    fn halvings(&self) -> usize {
+        0
+    }
+
     fn sample(&self, target: &Body<'_>, u: f64) -> (Near, f64) {
         let spot = self.spot(target, u);
         (spot.near, spot.slope)

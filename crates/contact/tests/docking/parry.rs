@@ -38,11 +38,12 @@ fn queries_through_the_chain_agree_with_the_detector() {
             let is_twin = a == b;
             let shape_a = parry_shape(&a).unwrap();
             let mut two = Two::new(a.clone(), b);
-            for _ in 0..10 {
+            for _ in 0..40 {
                 let frame = dice.frame(0.12);
                 let pose = parry_pose(&frame);
                 let ours = two.find(&at(0.0, 0.0, 0.0), &frame, 0.01).to_vec();
-                let Some(nearest) = ours.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)).filter(|p| p.gap > -4e-3) else { continue };
+                // Cores that cross have no normal to speak of.
+                let Some(nearest) = ours.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)).filter(|p| p.gap > -5e-4) else { continue };
                 let margin = 0.01 + 1e-4;
                 let contact = chain.contact(&pose, &*shape_a, &*shape_b, margin).unwrap().unwrap();
                 assert!((contact.dist - nearest.gap).abs() < CONVERTED, "{contact:?} {nearest:?}");

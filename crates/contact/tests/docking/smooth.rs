@@ -28,18 +28,23 @@ struct Slide {
 }
 
 /// B's frame, pushed home by Newton steps along the press direction.
-fn place(slide: &Slide, two: &mut Two, t: f64) -> Frame {
+///
+/// `shift`: how far it was pushed the step before, m, to start from; the place it ends at is the same to round-off.
+fn place(slide: &Slide, two: &mut Two, t: f64, shift: &mut f64) -> Frame {
     let mut frame = (slide.pose)(t);
     let Some(press) = slide.press else { return frame };
-    for _ in 0..30 {
-        let points = two.find(&at(0.0, 0.0, 0.0), &frame, 0.1);
+    frame.pos -= *shift * press;
+    for attempt in 0..30 {
+        let reach = if t == 0.0 && attempt < 20 { 0.1 } else { 1e-3 };
+        let points = two.find(&at(0.0, 0.0, 0.0), &frame, reach);
         let Some(deepest) = points.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)) else { panic!("{} at {t}: out of reach", slide.name) };
         // Touch exactly, where gaps are those of the surfaces, then press.
         let miss = deepest.gap - 1e-9;
-        let along = press / deepest.normal_w.dot(&press);
-        frame.pos -= miss * along;
-        if miss.abs() < 1e-15 {
-            frame.pos -= (DEPTH + 1e-9) * along;
+        let slope = deepest.normal_w.dot(&press);
+        frame.pos -= miss / slope * press;
+        *shift += miss / slope;
+        if miss.abs() < 1e-14 {
+            frame.pos -= (DEPTH + 1e-9) / slope * press;
             return frame;
         }
     }
@@ -49,10 +54,10 @@ fn place(slide: &Slide, two: &mut Two, t: f64) -> Frame {
 /// Largest second difference over the largest force; how often identities changed; the most that touch at once.
 fn run(slide: &Slide) -> (f64, usize, usize) {
     let mut two = Two::new(slide.a.clone(), slide.b.clone());
-    let (mut forces, mut most, mut changes) = (Vec::with_capacity(STEPS), 0, 0);
+    let (mut forces, mut most, mut changes, mut shift) = (Vec::with_capacity(STEPS), 0, 0, 0.0);
     let mut before: Option<Vec<u64>> = None;
     for i in 0..STEPS {
-        let frame = place(slide, &mut two, i as f64 / STEPS as f64);
+        let frame = place(slide, &mut two, i as f64 / STEPS as f64, &mut shift);
         let touching = two.find_touching(&at(0.0, 0.0, 0.0), &frame);
         assert!(!touching.is_empty(), "{} at step {i}: nothing touches", slide.name);
         let names: Vec<u64> = touching.iter().map(|p| p.feature).collect();
@@ -114,9 +119,10 @@ fn long_slides() -> Vec<Slide> {
         slide("tilted capsule in a cone", cone(), capsule.clone(), Some(Vec3::z()), |t| {
             turned(Vec3::new(0.1 * (TAU * t).cos(), 0.1 * (TAU * t).sin(), 0.0), 0.03 * (TAU * t).cos(), 0.03 * (TAU * t).sin(), 0.0)
         }),
-        slide("capsule across a ring", ring(), capsule.clone(), Some(Vec3::z()), move |t| {
+        // Its two points meet where it leaves the chord and are one from there.
+        Slide { changes: 1, ..slide("capsule across a ring", ring(), capsule.clone(), Some(Vec3::z()), move |t| {
             Frame { pos: Vec3::new(0.15 + 0.05 * t, 0.0, 0.03), ..turned(along_y, 0.0, 0.0, 0.0) }
-        }),
+        }) },
         slide("capsule along a petal", petal(), capsule, Some(-Vec3::x()), move |t| {
             Frame { pos: Vec3::new(0.16, 0.01, 0.03 + 0.05 * t), ..turned(along_y, 0.0, 0.0, 0.0) }
         }),
@@ -141,10 +147,11 @@ fn docking_slides() -> Vec<Slide> {
             let turn = turned(lean(0.05)(t), 0.0, 0.0, 0.0).rot * turned(face_down, 0.0, 0.0, 0.0).rot;
             Frame { rot: turn, pos: Vec3::new(0.0, 0.0, 0.03) }
         }),
-        slide("plane rolls over a petal's tip", petal(), plane, Some(Vec3::z()), move |t| {
+        // From one corner along the tip's arc to the other: the arc's point comes and goes at the corners.
+        Slide { changes: 4, ..slide("plane rolls over a petal's tip", petal(), plane, Some(Vec3::z()), move |t| {
             let turn = turned(Vec3::new(0.4 - 0.8 * t, 0.3, 0.0), 0.0, 0.0, 0.0).rot * turned(face_down, 0.0, 0.0, 0.0).rot;
             Frame { rot: turn, pos: Vec3::new(0.07, 0.0, 0.14) }
-        }),
+        }) },
         slide("ring rolls round a ring", ring(), Shape::Docking(ring()), Some(Vec3::z()), move |t| {
             Frame { pos: Vec3::new(0.0, 0.0, 0.04), ..turned(lean(0.05)(t), 0.0, 0.0, 0.0) }
         }),
@@ -152,12 +159,14 @@ fn docking_slides() -> Vec<Slide> {
             Frame { pos: Vec3::new(0.01 * (TAU * t).cos(), 0.01 * (TAU * t).sin(), -0.03), ..turned(lean(0.1)(t), 0.0, 0.0, 0.0) }
         }),
         slide("ring along a petal", petal(), Shape::Docking(ring()), Some(-Vec3::x()), |t| turned(Vec3::new(0.02, 0.05, 0.0), -0.03, 0.0, 0.04 + 0.05 * t)),
-        slide("petal edge along a petal", petal(), Shape::Docking(petal()), Some(Vec3::y()), |t| {
+        Slide { changes: 4, ..slide("petal edge along a petal", petal(), Shape::Docking(petal()), Some(Vec3::y()), |t| {
             turned(Vec3::new(0.0, 0.1, 0.6), 0.0, 0.16, 0.02 - 0.04 * t)
-        }),
-        slide("petal over a petal", petal(), Shape::Docking(petal()), Some(Vec3::x()), |t| {
-            turned(Vec3::new(0.3, -0.9, 0.0), 0.1, 0.01 - 0.02 * t, 0.03)
-        }),
+        }) },
+        Slide { changes: 2, ..slide("petal bulging against a petal", petal(), Shape::Docking(petal()), Some(Vec3::x()), |t| {
+            let flipped = turned(std::f64::consts::PI * Vec3::y(), 0.0, 0.0, 0.0);
+            let crossed = turned(0.3 * Vec3::x(), 0.0, 0.0, 0.0);
+            Frame { rot: crossed.rot * flipped.rot, pos: Vec3::new(0.33, 0.01 - 0.02 * t, 0.12) }
+        }) },
     ]
 }
 

@@ -3,6 +3,7 @@
 //! Every name is resolved here; what cannot be built is told all at once, each fault with its line in the file.
 
 mod actuators;
+mod docking;
 mod faults;
 mod kinematics;
 mod shapes;

@@ -3,6 +3,7 @@
 //! Shapes of different vehicles (and of the world) may touch unless a `[[contact]]` says `enabled = false`; shapes of one
 //! vehicle only where a `[[contact]]` names them. Every shape answers to its own name and to its link's.
 
+use super::docking::{docking_of_geometry, docking_of_kind};
 use super::faults::Faults;
 use crate::spec::{ContactLaw, FrictionLaw, NormalLaw, Scenario, ShapeKind};
 use contact::{Normal, Shape};
@@ -71,6 +72,7 @@ pub fn shape_of_geometry(geometry: &Geometry) -> Shape {
         Geometry::Sphere { radius } => Shape::Ball { radius: *radius },
         Geometry::Cylinder { radius, length } => Shape::Cylinder { radius: *radius, half_length: 0.5 * length },
         Geometry::Capsule { radius, length } => Shape::Capsule { radius: *radius, half_length: 0.5 * length },
+        Geometry::Docking(geometry) => Shape::Docking(docking_of_geometry(geometry)),
         Geometry::Mesh(mesh) => Shape::TriMesh {
             vertices: mesh.vertices.iter().map(|v| Vec3::from(*v)).collect(),
             triangles: mesh.triangles.clone(),
@@ -123,6 +125,9 @@ pub(super) fn place_of(
 }
 
 fn shape_of_kind(kind: &ShapeKind) -> Shape {
+    if let Some(docking) = docking_of_kind(kind) {
+        return Shape::Docking(docking);
+    }
     match *kind {
         ShapeKind::Box { size_m } => Shape::Cuboid { half_extents: 0.5 * Vec3::from(size_m) },
         ShapeKind::Sphere { radius_m } => Shape::Ball { radius: radius_m },
@@ -131,7 +136,8 @@ fn shape_of_kind(kind: &ShapeKind) -> Shape {
             Shape::Capsule { radius: radius_m, half_length: 0.5 * length_m }
         }
         ShapeKind::Capsule { radius_m, .. } => Shape::Ball { radius: radius_m },
-        ShapeKind::HalfSpace => Shape::HalfSpace,
+        // Docking shapes are answered above.
+        _ => Shape::HalfSpace,
     }
 }
 
