@@ -1,41 +1,36 @@
-//! Docking shapes, from a URDF's tag and from a scenario's `[[shape]]` to those of the contact crate.
+//! Docking shapes of a scenario's `[[shape]]`s: as a URDF's tag would name them, and as something to see.
 
-use crate::spec::ShapeKind;
-use contact::Docking;
-use multibody::DockingGeometry;
+use crate::spec::{Scenario, ShapeKind};
+use multibody::{DockingGeometry, Geometry, Visual};
 
-/// The shape of a `<softdock_shape>` of a URDF.
-pub(super) fn docking_of_geometry(geometry: &DockingGeometry) -> Docking {
-    match *geometry {
-        DockingGeometry::InnerCone { half_angle, depth, throat_radius, wall } => {
-            Docking::InnerCone { half_angle, depth, throat_radius, wall }
-        }
-        DockingGeometry::InnerCylinder { radius, depth, wall, floor } => {
-            Docking::InnerCylinder { radius, depth, wall, floor }
-        }
-        DockingGeometry::Ring { major_radius, minor_radius } => Docking::Ring { major_radius, minor_radius },
-        DockingGeometry::Petal { base_radius, tip_radius, height, half_sector, thickness } => {
-            Docking::Petal { base_radius, tip_radius, height, half_sector, thickness }
-        }
-    }
+/// What to draw of the docking shapes that a scenario adds, each with what it is on (`vehicle/link` or "world").
+pub fn docking_visuals(scenario: &Scenario) -> Vec<(&str, Visual)> {
+    let visual = |shape: &crate::spec::Shape, geometry| Visual {
+        name: shape.name.clone(),
+        pose_ls: shape.pose.pose(),
+        geometry: Geometry::Docking(geometry),
+        rgba: None,
+    };
+    let docking = scenario.shapes.iter().filter_map(|s| Some((s, docking_of_kind(&s.kind)?)));
+    docking.map(|(shape, geometry)| (shape.on.as_str(), visual(shape, geometry))).collect()
 }
 
-/// The shape of a `[[shape]]`; `None` for the kinds that are no docking shape.
-pub(super) fn docking_of_kind(kind: &ShapeKind) -> Option<Docking> {
+/// The docking shape of a `[[shape]]`; `None` for the other kinds.
+pub(super) fn docking_of_kind(kind: &ShapeKind) -> Option<DockingGeometry> {
     Some(match *kind {
-        ShapeKind::InnerCone { half_angle_deg, depth_m, throat_radius_m, wall_m } => Docking::InnerCone {
+        ShapeKind::InnerCone { half_angle_deg, depth_m, throat_radius_m, wall_m } => DockingGeometry::InnerCone {
             half_angle: half_angle_deg.to_radians(),
             depth: depth_m,
             throat_radius: throat_radius_m,
             wall: wall_m,
         },
         ShapeKind::InnerCylinder { radius_m, depth_m, wall_m, floor } => {
-            Docking::InnerCylinder { radius: radius_m, depth: depth_m, wall: wall_m, floor }
+            DockingGeometry::InnerCylinder { radius: radius_m, depth: depth_m, wall: wall_m, floor }
         }
         ShapeKind::Ring { major_radius_m, minor_radius_m } => {
-            Docking::Ring { major_radius: major_radius_m, minor_radius: minor_radius_m }
+            DockingGeometry::Ring { major_radius: major_radius_m, minor_radius: minor_radius_m }
         }
-        ShapeKind::Petal { base_radius_m, tip_radius_m, height_m, half_sector_deg, thickness_m } => Docking::Petal {
+        ShapeKind::Petal { base_radius_m, tip_radius_m, height_m, half_sector_deg, thickness_m } => DockingGeometry::Petal {
             base_radius: base_radius_m,
             tip_radius: tip_radius_m,
             height: height_m,

@@ -13,6 +13,7 @@ mod vehicles;
 pub(crate) use actuators::ActuatorTable;
 pub(crate) use faults::Faults;
 pub(crate) use kinematics::{calc_error, halves, solve_pose};
+pub use docking::docking_visuals;
 pub use shapes::shape_of_geometry;
 
 use crate::error::ScenarioErrors;

@@ -3,12 +3,13 @@
 //! Shapes of different vehicles (and of the world) may touch unless a `[[contact]]` says `enabled = false`; shapes of one
 //! vehicle only where a `[[contact]]` names them. Every shape answers to its own name and to its link's.
 
-use super::docking::{docking_of_geometry, docking_of_kind};
+use super::docking::docking_of_kind;
 use super::faults::Faults;
 use crate::spec::{ContactLaw, FrictionLaw, NormalLaw, Scenario, ShapeKind};
 use contact::{Normal, Shape};
 use friction::Bristle;
 use multibody::{Geometry, RobotDescription};
+use record::docking_of_geometry;
 use sim::{Base, PairLaw, ShapeSpec, VehicleSpec};
 use spatial::Vec3;
 
@@ -126,7 +127,7 @@ pub(super) fn place_of(
 
 fn shape_of_kind(kind: &ShapeKind) -> Shape {
     if let Some(docking) = docking_of_kind(kind) {
-        return Shape::Docking(docking);
+        return Shape::Docking(docking_of_geometry(&docking));
     }
     match *kind {
         ShapeKind::Box { size_m } => Shape::Cuboid { half_extents: 0.5 * Vec3::from(size_m) },

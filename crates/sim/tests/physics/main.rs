@@ -7,6 +7,7 @@
 
 mod convergence;
 mod determinism;
+mod docking;
 mod free_motion;
 mod friction;
 mod guided;
