@@ -28,8 +28,8 @@ fn smooth() -> PairLaw {
     PairLaw { normal: linear(1e5, 300.0), friction: None }
 }
 
-fn rough(mu: f64) -> PairLaw {
-    PairLaw { normal: linear(1e5, 300.0), friction: Some(bristle(mu, 1e5, 100.0)) }
+fn rough(mu: f64, stiffness: f64) -> PairLaw {
+    PairLaw { normal: linear(stiffness, 3e-3 * stiffness), friction: Some(bristle(mu, stiffness, 1e-3 * stiffness)) }
 }
 
 /// Resultant and moment about the body's origin of the touching points, N and N·m; how many they are.
@@ -52,8 +52,8 @@ fn assert_balanced(world: &World, gravity: &Vec3, arm: f64) -> usize {
 #[test]
 fn ball_in_a_drogue_comes_to_rest_in_balance_on_eight_points() {
     let down = Vec3::new(0.0, 0.0, -GRAVITY);
-    let mut world = body_in(drogue(), Shape::Ball { radius: 0.04 }, rough(0.3), down);
-    // On the seat but for 2 mm to the side, where one point bears it: it slides and rolls home.
+    let mut world = body_in(drogue(), Shape::Ball { radius: 0.04 }, smooth(), down);
+    // On the seat but for 2 mm to the side, where one point bears it: it slides home.
     let seat = (0.04 / 0.7_f64.cos() - 0.02) / 0.7_f64.tan() - 0.14;
     world.state_mut().bases[0] = Pose::translation(2e-3, 1e-3, seat + 3e-3);
     run(&mut world, 10_000);
@@ -61,7 +61,7 @@ fn ball_in_a_drogue_comes_to_rest_in_balance_on_eight_points() {
     // Depth on the seat: m g = 8 k δ sin α.
     let z = world.state().bases[0].translation.vector.z;
     let depth = (seat - z) * 0.7_f64.sin();
-    assert!((depth / (GRAVITY / (8.0 * 1e5 * 0.7_f64.sin())) - 1.0).abs() < 0.05, "{depth}");
+    assert!((depth / (GRAVITY / (8.0 * 1e5 * 0.7_f64.sin())) - 1.0).abs() < 1e-6, "{depth}");
 }
 
 #[test]
@@ -69,9 +69,9 @@ fn capsule_probe_leans_on_three_points_in_balance() {
     // Leaning in a wide bore: its lower end on the floor and on the wall, its side on the rim.
     let down = Vec3::new(0.0, 0.0, -GRAVITY);
     let socket = Docking::InnerCylinder { radius: 0.06, depth: 0.1, wall: 0.012, floor: true };
-    let mut world = body_in(socket, Shape::Capsule { radius: 0.02, half_length: 0.1 }, rough(0.5), down);
+    let mut world = body_in(socket, Shape::Capsule { radius: 0.02, half_length: 0.1 }, rough(0.05, 1e5), down);
     // The axis through the lower end's centre, on the floor at the wall, and past the rim on the other side.
-    let (low, tilt) = (Vec3::new(0.04, 0.0, -0.08), -0.62);
+    let (low, tilt) = (Vec3::new(0.04, 0.0, -0.08), -0.7);
     let axis = Vec3::new(f64::sin(tilt), 0.0, f64::cos(tilt));
     let centre = low + 0.1 * axis + Vec3::new(0.0, 0.0, 2e-4);
     world.state_mut().bases[0] = Pose::from_parts(centre.into(), Rot::from_scaled_axis(tilt * Vec3::y()));
@@ -81,11 +81,11 @@ fn capsule_probe_leans_on_three_points_in_balance() {
 
 #[test]
 fn peg_in_a_bore_tilts_until_it_bears_on_two_points() {
-    // Radius 19.8 in a bore of 20 mm, hung by gravity across the bore: tilted by its weight outside of the mouth.
+    // Radius 19.8 in a bore of 20 mm, so stiff that a point does not reach its neighbours round the bore; hung by gravity across the bore: tilted by its weight outside of the mouth.
     let across = Vec3::new(-GRAVITY, 0.0, 0.0);
     let bore = Docking::InnerCylinder { radius: 0.02, depth: 0.06, wall: 0.01, floor: false };
     for peg in [Shape::Capsule { radius: 0.0198, half_length: 0.06 }, Shape::Cylinder { radius: 0.0198, half_length: 0.06 }] {
-        let mut world = body_in(bore, peg.clone(), rough(0.8), across);
+        let mut world = body_in(bore, peg.clone(), rough(0.8, 1e6), across);
         world.state_mut().bases[0] = Pose::translation(0.0, 0.0, 0.02);
         run(&mut world, 10_000);
         let points = assert_balanced(&world, &across, 0.06);
@@ -104,7 +104,7 @@ fn ring_lies_flat_on_a_plane_in_balance_and_keeps_still() {
     let mut spec = spec(vec![(tree, Base::Free)], &setup);
     let ring = Docking::Ring { major_radius: 0.2, minor_radius: 0.015 };
     spec.shapes = vec![shape("floor", None, Shape::HalfSpace), shape("ring", Some(0), Shape::Docking(ring))];
-    spec.pairs = vec![([0, 1], rough(0.5))];
+    spec.pairs = vec![([0, 1], rough(0.5, 1e5))];
     let mut world = world(spec);
     world.state_mut().bases[0] = Pose::translation(0.0, 0.0, 0.015);
     run(&mut world, 5_000);
@@ -152,7 +152,7 @@ fn ball_that_circles_in_a_drogue_keeps_its_energy() {
 /// offset and a clocking error: the petals guide it until the rings lie on each other, centred and clocked.
 #[test]
 fn three_petals_guide_their_twin_home() {
-    let petal = Docking::Petal { base_radius: 0.2, tip_radius: 0.08, height: 0.12, half_sector: 0.55, thickness: 0.02 };
+    let petal = Docking::Petal { base_radius: 0.2, tip_radius: 0.08, height: 0.12, half_sector: 0.68, thickness: 0.012 };
     let ring = Docking::Ring { major_radius: 0.3, minor_radius: 0.02 };
     let half = |vehicle: Option<usize>| -> Vec<ShapeSpec> {
         let mut shapes = vec![shape("ring", vehicle, Shape::Docking(ring))];
@@ -171,7 +171,7 @@ fn three_petals_guide_their_twin_home() {
     let law = PairLaw { normal: Normal { ..hunt_crossley(1e5, 1.0, 20.0) }, friction: Some(bristle(0.05, 1e5, 100.0)) };
     spec.pairs = (0..4).flat_map(|i| (4..8).map(move |j| ([i, j], law))).collect();
     let mut world = world(spec);
-    let clocked = Rot::from_scaled_axis((PI / 3.0 + 0.06) * Vec3::z()) * Rot::from_scaled_axis(PI * Vec3::x());
+    let clocked = Rot::from_scaled_axis((PI / 3.0 + 0.12) * Vec3::z()) * Rot::from_scaled_axis(PI * Vec3::x());
     world.state_mut().bases[0] = Pose::from_parts(Vec3::new(0.01, 0.005, 0.2).into(), clocked);
     run(&mut world, 20_000);
     let pose = world.state().bases[0];
@@ -182,5 +182,5 @@ fn three_petals_guide_their_twin_home() {
     let clocking = clocking.min(TAU / 3.0 - clocking);
     println!("at {p:?}, axis {axis:?}, clocking {clocking} rad, points {}", resultant(&world).2);
     assert!((p.z - 0.04).abs() < 1e-3, "rings do not lie on each other: {p:?}");
-    assert!(p.xy().norm() < 0.01 && axis.z < -0.999 && clocking < 0.06, "{p:?} {axis:?} {clocking}");
+    assert!(p.xy().norm() < 0.01 && axis.z < -0.999 && clocking < 0.05, "{p:?} {axis:?} {clocking}");
 }
