@@ -213,6 +213,8 @@ fn ball_of(solid: &Solid) -> Ball {
 fn twin_of<'a>(solid: &'a Solid, ball: &'a Ball) -> (&'a dyn Shape, Mat3) {
     match solid {
         Solid::Ball(_) => (ball, Mat3::identity()),
-        Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Docking(_, twin) | Solid::Other(twin) => (&*twin.shape, twin.turn),
+        Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Docking(_, twin) | Solid::Other(twin) => {
+            (&*twin.shape, twin.turn)
+        }
     }
 }

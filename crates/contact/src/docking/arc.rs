@@ -128,7 +128,6 @@ impl Curve {
         let (s, c) = u.sin_cos();
         c * self.arms[1] - s * self.arms[0]
     }
-
 }
 
 impl Path for Curve {
@@ -162,7 +161,8 @@ fn scan(path: &impl Path, target: &Body<'_>, reach: f64) -> Scan {
     let step = span / COARSE as f64;
     let first = sample(path, target, from);
     let start = Minimum { u: from, near: Near { normal: Vec3::z(), distance: f64::INFINITY } };
-    let mut scan = Scan { minima: [start; MOST], count: 0, budget: BUDGET, far: first.1, nearest: start, ends: first.1 };
+    let mut scan =
+        Scan { minima: [start; MOST], count: 0, budget: BUDGET, far: first.1, nearest: start, ends: first.1 };
     let (mut best, mut before) = (first, first);
     for i in 1..=COARSE {
         let u = from + step * i as f64;

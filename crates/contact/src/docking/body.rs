@@ -97,7 +97,9 @@ impl<'a> Body<'a> {
         match self.kind {
             Kind::Point | Kind::Plane => None,
             Kind::Sheet(sheet) => sheet.curves(&self.frame).get(i).map(|curve| (*curve, self.radius)),
-            Kind::Core(core) => curve_of_core(core, &self.frame, i).map(|(curve, radius)| (Some(curve), radius + self.radius)),
+            Kind::Core(core) => {
+                curve_of_core(core, &self.frame, i).map(|(curve, radius)| (Some(curve), radius + self.radius))
+            }
         }
     }
 
@@ -127,7 +129,8 @@ fn nearest_of_core(core: &Core, p: &Vec3) -> Near {
 
 /// Rims and axis of a cylinder, axis of a capsule, edges of a box.
 fn curve_of_core(core: &Core, frame: &Frame, i: usize) -> Option<(Curve, f64)> {
-    let axis = |half: f64| Curve::segment(frame.point(&Vec3::new(0.0, 0.0, -half)), frame.point(&Vec3::new(0.0, 0.0, half)));
+    let axis =
+        |half: f64| Curve::segment(frame.point(&Vec3::new(0.0, 0.0, -half)), frame.point(&Vec3::new(0.0, 0.0, half)));
     match core {
         Core::Segment { half } => (i == 0).then(|| (axis(*half), 0.0)),
         Core::Cylinder(c) if i < 2 => {

@@ -85,7 +85,15 @@ impl Question<'_> {
         let gap = near.distance - self.radii();
         let toward = if self.owner_leads { -near.normal } else { near.normal };
         let middle = at - (self.owner_radius + 0.5 * gap) * near.normal;
-        Candidate { source: self.source, label, rank: self.rank, owner_leads: self.owner_leads, middle, normal: toward, gap }
+        Candidate {
+            source: self.source,
+            label,
+            rank: self.rank,
+            owner_leads: self.owner_leads,
+            middle,
+            normal: toward,
+            gap,
+        }
     }
 }
 
@@ -99,11 +107,7 @@ impl DockingBuffer {
         let (lead, other) = if a_leads { (a, b) } else { (b, a) };
         let (frame, relative) = (lead.frame, lead.frame_of(other));
         self.found.clear();
-        self.collect(
-            &Body { frame: Frame::identity(), ..*lead },
-            &Body { frame: relative, ..*other },
-            margin,
-        );
+        self.collect(&Body { frame: Frame::identity(), ..*lead }, &Body { frame: relative, ..*other }, margin);
         self.share(lead.scale() + other.scale());
         out.extend(self.found.iter().map(|c| {
             let raw = Raw {
@@ -137,8 +141,14 @@ impl DockingBuffer {
     /// Where the curved sides of two sheets bulge towards each other.
     fn add_faces(&mut self, lead: &Body<'_>, other: &Body<'_>, margin: f64) {
         let (Some(face), Some(_)) = (Face::of(lead), Face::of(other)) else { return };
-        let question =
-            Question { owner_leads: true, owner_radius: lead.radius, target: other, source: 48, rank: Rank::Face, margin };
+        let question = Question {
+            owner_leads: true,
+            owner_radius: lead.radius,
+            target: other,
+            source: 48,
+            rank: Rank::Face,
+            margin,
+        };
         let scan = face.scan(other, margin + question.radii());
         for minimum in scan.minima() {
             let spot = face.spot(other, minimum.u);
@@ -157,7 +167,8 @@ impl DockingBuffer {
     fn add_body_points(&mut self, (owner, target, owner_leads): (&Body<'_>, &Body<'_>, bool), first: u32, margin: f64) {
         let (points, count) = owner.points();
         for (source, p) in (first..).zip(&points[..count]) {
-            let question = Question { owner_leads, owner_radius: owner.radius, target, source, rank: Rank::Point, margin };
+            let question =
+                Question { owner_leads, owner_radius: owner.radius, target, source, rank: Rank::Point, margin };
             self.add_point(p, &question);
         }
     }
@@ -165,7 +176,8 @@ impl DockingBuffer {
     fn add_body_curves(&mut self, (owner, target, owner_leads): (&Body<'_>, &Body<'_>, bool), first: u32, margin: f64) {
         for i in 0.. {
             let Some((curve, owner_radius)) = owner.curve(i) else { return };
-            let question = Question { owner_leads, owner_radius, target, source: first + i as u32, rank: Rank::Curve, margin };
+            let question =
+                Question { owner_leads, owner_radius, target, source: first + i as u32, rank: Rank::Curve, margin };
             match curve {
                 Some(curve) if curve.is_closed() => self.add_circle(&curve, &question),
                 Some(curve) => self.add_open(&curve, &question),
@@ -177,7 +189,9 @@ impl DockingBuffer {
     /// A ball's centre, or the like: the nearest place, and those round the axis where it may be seated.
     fn add_point(&mut self, p: &Vec3, question: &Question<'_>) {
         let near = question.target.nearest(p);
-        let Some(sheet) = question.target.seat() else { return self.push(question.candidate(p, &near, 0), question.margin) };
+        let Some(sheet) = question.target.seat() else {
+            return self.push(question.candidate(p, &near, 0), question.margin);
+        };
         let frame = &question.target.frame;
         let local = frame.inverse_point(p);
         let (cos, sin) = unit(local.x, local.y);
@@ -200,7 +214,8 @@ impl DockingBuffer {
     fn add_open(&mut self, curve: &Curve, question: &Question<'_>) {
         let scan = curve.scan(question.target, question.margin + question.radii());
         for minimum in scan.minima() {
-            let label = if scan.minima().len() == 1 { 0 } else { SECONDARY + (BINS * minimum.u.rem_euclid(1.0)) as u32 };
+            let label =
+                if scan.minima().len() == 1 { 0 } else { SECONDARY + (BINS * minimum.u.rem_euclid(1.0)) as u32 };
             let mut candidate = question.candidate(&curve.point(minimum.u), &minimum.near, label);
             if candidate.gap < 0.0 {
                 candidate.gap = candidate.gap.max(minimum.near.distance - scan.ends);

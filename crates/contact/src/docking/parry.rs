@@ -4,23 +4,23 @@
 //! of a [`DockingShape`] against balls, capsules, cylinders, boxes, half-spaces and other docking shapes with the same
 //! closed forms as [`crate::Detector`]; every other pair is left to the next dispatcher, as are shape casts.
 
+use super::Docking;
 use super::body::{Body, Kind};
 use super::pair::DockingBuffer;
 use super::sheet::{Near, Sheet};
-use super::Docking;
+use crate::ContactError;
 use crate::analytic::Raw;
 use crate::convex::Core;
 use crate::cylinder::Cylinder;
 use crate::scene::{from_parry, to_parry};
-use crate::ContactError;
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d_f64::mass_properties::MassProperties;
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::query::details::{ContactManifoldsWorkspace, NormalConstraints, ShapeCastOptions};
 use parry3d_f64::query::{
-    ClosestPoints, Contact, ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, PointProjection, PointQuery,
-    QueryDispatcher, Ray, RayCast, RayIntersection, ShapeCastHit, ShapeDistance, ShapeIntersection, TrackedContact,
-    Unsupported,
+    ClosestPoints, Contact, ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, PointProjection,
+    PointQuery, QueryDispatcher, Ray, RayCast, RayIntersection, ShapeCastHit, ShapeDistance, ShapeIntersection,
+    TrackedContact, Unsupported,
 };
 use parry3d_f64::shape::{FeatureId, PackedFeatureId, Shape, ShapeType, TriMesh, TypedShape};
 use spatial::{Frame, Vec3};
@@ -88,7 +88,8 @@ impl Shape for DockingShape {
     fn mass_properties(&self, density: f64) -> MassProperties {
         let mesh = self.docking.tessellate();
         let vertices = mesh.vertices.iter().map(to_parry).collect();
-        TriMesh::new(vertices, mesh.triangles).map_or_else(|_| MassProperties::default(), |m| m.mass_properties(density))
+        TriMesh::new(vertices, mesh.triangles)
+            .map_or_else(|_| MassProperties::default(), |m| m.mass_properties(density))
     }
 
     fn shape_type(&self) -> ShapeType {
@@ -174,8 +175,12 @@ impl<'a> Pieces<'a> {
         };
         Some(match shape.as_typed_shape() {
             TypedShape::Ball(ball) => Self { radius: ball.radius, ..plain },
-            TypedShape::Cuboid(cuboid) => Self { core: Some(Core::Cuboid { half: from_parry(cuboid.half_extents) }), ..plain },
-            TypedShape::HalfSpace(half) => Self { plane: true, frame: upright(from_parry(half.normal), Vec3::zeros()), ..plain },
+            TypedShape::Cuboid(cuboid) => {
+                Self { core: Some(Core::Cuboid { half: from_parry(cuboid.half_extents) }), ..plain }
+            }
+            TypedShape::HalfSpace(half) => {
+                Self { plane: true, frame: upright(from_parry(half.normal), Vec3::zeros()), ..plain }
+            }
             TypedShape::Cylinder(cylinder) => {
                 let core = Core::Cylinder(Cylinder { radius: cylinder.radius, half: cylinder.half_height });
                 Self { core: Some(core), frame: upright(Vec3::y(), Vec3::zeros()), ..plain }
@@ -217,18 +222,27 @@ fn points(pos12: &ParryPose, g1: &dyn Shape, g2: &dyn Shape, margin: f64) -> Res
         for (j, b) in two.bodies().enumerate() {
             let start = found.len();
             buffer.add_points(&a, &b, margin, &mut found);
-            found[start..].iter_mut().for_each(|p: &mut Raw| p.feature = crate::manifold::mix(p.feature, i as u32, j as u32));
+            found[start..]
+                .iter_mut()
+                .for_each(|p: &mut Raw| p.feature = crate::manifold::mix(p.feature, i as u32, j as u32));
         }
     }
     Ok(found)
 }
 
 fn nearest(pos12: &ParryPose, g1: &dyn Shape, g2: &dyn Shape, margin: f64) -> Result<Option<Raw>, Unsupported> {
-    Ok(points(pos12, g1, g2, margin)?.into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap).then(a.feature.cmp(&b.feature))))
+    Ok(points(pos12, g1, g2, margin)?
+        .into_iter()
+        .min_by(|a, b| a.gap.total_cmp(&b.gap).then(a.feature.cmp(&b.feature))))
 }
 
 impl QueryDispatcher for DockingDispatcher {
-    fn intersection_test(&self, pos12: &ParryPose, g1: &dyn Shape, g2: &dyn Shape) -> Result<ShapeIntersection, Unsupported> {
+    fn intersection_test(
+        &self,
+        pos12: &ParryPose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeIntersection, Unsupported> {
         Ok(nearest(pos12, g1, g2, f64::MIN_POSITIVE)?.is_some().into())
     }
 
@@ -237,7 +251,13 @@ impl QueryDispatcher for DockingDispatcher {
         Ok(near.gap.max(0.0).into())
     }
 
-    fn contact(&self, pos12: &ParryPose, g1: &dyn Shape, g2: &dyn Shape, prediction: f64) -> Result<Option<Contact>, Unsupported> {
+    fn contact(
+        &self,
+        pos12: &ParryPose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: f64,
+    ) -> Result<Option<Contact>, Unsupported> {
         let near = nearest(pos12, g1, g2, prediction)?;
         Ok(near.map(|near| {
             let (p1, p2) = witnesses(pos12, &near);
@@ -246,7 +266,13 @@ impl QueryDispatcher for DockingDispatcher {
         }))
     }
 
-    fn closest_points(&self, pos12: &ParryPose, g1: &dyn Shape, g2: &dyn Shape, max_dist: f64) -> Result<ClosestPoints, Unsupported> {
+    fn closest_points(
+        &self,
+        pos12: &ParryPose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        max_dist: f64,
+    ) -> Result<ClosestPoints, Unsupported> {
         Ok(match nearest(pos12, g1, g2, max_dist)? {
             None => ClosestPoints::Disjoint,
             Some(near) if near.gap <= 0.0 => ClosestPoints::Intersecting,
@@ -301,7 +327,13 @@ impl<M: Default + Clone, C: Default + Copy> PersistentQueryDispatcher<M, C> for 
             manifold.local_n2 = pos12.rotation.inverse() * -manifold.local_n1;
             let id = PackedFeatureId::face(raw.feature as u32 & CODE);
             manifold.points.clear();
-            manifold.points.push(TrackedContact::new(p1, p2, id, PackedFeatureId::face((raw.feature >> 32) as u32 & CODE), raw.gap));
+            manifold.points.push(TrackedContact::new(
+                p1,
+                p2,
+                id,
+                PackedFeatureId::face((raw.feature >> 32) as u32 & CODE),
+                raw.gap,
+            ));
         }
         Ok(())
     }

@@ -112,7 +112,11 @@ impl Sheet {
     fn across(&self) -> Meridian {
         let (dr, dz) = self.along();
         let length = dr.hypot(dz);
-        if length > 0.0 { Meridian { rho: -dz.abs() / length, z: dr.copysign(dr * dz) / length } } else { Meridian { rho: -1.0, z: 0.0 } }
+        if length > 0.0 {
+            Meridian { rho: -dz.abs() / length, z: dr.copysign(dr * dz) / length }
+        } else {
+            Meridian { rho: -1.0, z: 0.0 }
+        }
     }
 
     /// Whether it is a circle.
@@ -142,7 +146,8 @@ impl Sheet {
         let rim = |end: Meridian| {
             let (from, span) = self.half_sector.map_or((0.0, TAU), |half| (-half, 2.0 * half));
             let axis = |k: usize| end.rho * frame.rot.column(k).into_owned();
-            (end.rho > 0.0).then(|| Curve::arc(frame.point(&Vec3::new(0.0, 0.0, end.z)), [axis(0), axis(1)], from, span))
+            (end.rho > 0.0)
+                .then(|| Curve::arc(frame.point(&Vec3::new(0.0, 0.0, end.z)), [axis(0), axis(1)], from, span))
         };
         let point = self.ends[0] == self.ends[1];
         let (corners, count) = self.corners(frame);

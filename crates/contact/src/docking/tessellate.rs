@@ -2,8 +2,8 @@
 //!
 //! The outline of the rounded meridian, a stadium, is swept round; a sector ends in half a stadium turned about its edge.
 
-use super::sheet::{Meridian, Sheet};
 use super::Docking;
+use super::sheet::{Meridian, Sheet};
 use spatial::Vec3;
 use std::f64::consts::PI;
 
@@ -40,7 +40,9 @@ impl Tessellation {
         let stations = if closed { steps } else { steps + 1 };
         let mut rings: Vec<Vec<Vec3>> = Vec::new();
         if !closed {
-            rings.extend((1..=ROUNDING).map(|i| end_ring(sheet, -half, -0.5 * PI * (1.0 - (i - 1) as f64 / ROUNDING as f64))));
+            rings.extend(
+                (1..=ROUNDING).map(|i| end_ring(sheet, -half, -0.5 * PI * (1.0 - (i - 1) as f64 / ROUNDING as f64))),
+            );
         }
         rings.extend((0..stations).map(|i| {
             let azimuth = -half + 2.0 * half * i as f64 / steps as f64;
@@ -78,7 +80,9 @@ impl Tessellation {
 /// The stadium about the meridian as (ρ, z), clockwise with ρ to the right. What would lie beyond the axis is laid on it.
 fn outline(sheet: &Sheet) -> Vec<[f64; 2]> {
     let [p, q] = sheet.ends;
-    let at = |end: Meridian, angle: f64| [(end.rho + sheet.radius * angle.cos()).max(0.0), end.z + sheet.radius * angle.sin()];
+    let at = |end: Meridian, angle: f64| {
+        [(end.rho + sheet.radius * angle.cos()).max(0.0), end.z + sheet.radius * angle.sin()]
+    };
     let angle = |i: usize| -PI * i as f64 / ROUNDING as f64;
     if p == q {
         return (0..2 * ROUNDING).map(|i| at(p, angle(i))).collect();

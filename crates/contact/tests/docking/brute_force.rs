@@ -93,7 +93,11 @@ fn descend<const N: usize>(f: &dyn Fn(&[f64; N]) -> f64, start: (f64, [f64; N]),
         for i in 0..2 * N + 12 {
             let mut y = x;
             for k in 0..N {
-                let along = if i < 2 * N { f64::from(i / 2 == k) * (1.0 - 2.0 * (i % 2) as f64) } else { dice.between(-1.0, 1.0) };
+                let along = if i < 2 * N {
+                    f64::from(i / 2 == k) * (1.0 - 2.0 * (i % 2) as f64)
+                } else {
+                    dice.between(-1.0, 1.0)
+                };
                 y[k] = (x[k] + step * along).clamp(0.0, 1.0);
             }
             let value = f(&y);
@@ -171,7 +175,9 @@ fn normals_are_the_gradients_of_the_gaps() {
             let mut two = Two::new(Shape::Docking(docking), other.clone());
             for _ in 0..20 {
                 let (a, b) = (at(0.0, 0.0, 0.0), dice.frame(0.15));
-                let nearest = |two: &mut Two, b: &Frame| two.find(&a, b, 0.3).iter().copied().min_by(|p, q| p.gap.total_cmp(&q.gap));
+                let nearest = |two: &mut Two, b: &Frame| {
+                    two.find(&a, b, 0.3).iter().copied().min_by(|p, q| p.gap.total_cmp(&q.gap))
+                };
                 let Some(p) = nearest(&mut two, &b).filter(|p| p.gap > 1e-3) else { continue };
                 for k in 0..3 {
                     let axis = Vec3::ith(k, 1.0);

@@ -8,4 +8,3 @@ mod seats;
 mod smooth;
 mod support;
 mod symmetry;
-

@@ -43,13 +43,18 @@ fn queries_through_the_chain_agree_with_the_detector() {
                 let pose = parry_pose(&frame);
                 let ours = two.find(&at(0.0, 0.0, 0.0), &frame, 0.01).to_vec();
                 // Cores that cross have no normal to speak of.
-                let Some(nearest) = ours.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)).filter(|p| p.gap > -5e-4) else { continue };
+                let Some(nearest) = ours.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)).filter(|p| p.gap > -5e-4) else {
+                    continue;
+                };
                 let margin = 0.01 + 1e-4;
                 let contact = chain.contact(&pose, &*shape_a, &*shape_b, margin).unwrap().unwrap();
                 assert!((contact.dist - nearest.gap).abs() < CONVERTED, "{contact:?} {nearest:?}");
                 let distance = chain.distance(&pose, &*shape_a, &*shape_b).unwrap().distance;
                 assert!((distance - nearest.gap.max(0.0)).abs() < CONVERTED);
-                assert_eq!(chain.intersection_test(&pose, &*shape_a, &*shape_b).unwrap().intersecting, nearest.gap < 0.0);
+                assert_eq!(
+                    chain.intersection_test(&pose, &*shape_a, &*shape_b).unwrap().intersecting,
+                    nearest.gap < 0.0
+                );
                 // The other way round.
                 let swapped = chain.contact(&pose.inverse(), &*shape_b, &*shape_a, margin).unwrap().unwrap();
                 assert!((swapped.dist - nearest.gap).abs() < CONVERTED);

@@ -21,7 +21,10 @@ fn centred_ball_touches_a_cone_at_eight_points_in_balance() {
     assert_eq!(points.len(), 8);
     let force: Vec3 = points.iter().map(|p| -p.gap * p.normal_w).sum();
     assert!(points.iter().all(|p| (p.gap + depth).abs() < 1e-16 + ROUND_OFF), "{points:?}");
-    assert!(force.xy().norm() < ROUND_OFF && (force.z - 8.0 * depth * HALF_ANGLE.sin()).abs() < 8.0 * ROUND_OFF, "{force:?}");
+    assert!(
+        force.xy().norm() < ROUND_OFF && (force.z - 8.0 * depth * HALF_ANGLE.sin()).abs() < 8.0 * ROUND_OFF,
+        "{force:?}"
+    );
 }
 
 #[test]
@@ -70,11 +73,14 @@ fn ball_on_the_floor_of_a_socket_has_one_point_on_it() {
 /// Radius 49 mm in a bore of 50 mm, tilted until both touch: the lower end on one side, the rim on the other.
 #[test]
 fn tilted_peg_in_a_bore_touches_at_two_points() {
-    for peg in [Shape::Capsule { radius: 0.049, half_length: 0.1 }, Shape::Cylinder { radius: 0.049, half_length: 0.1 }] {
+    for peg in [Shape::Capsule { radius: 0.049, half_length: 0.1 }, Shape::Cylinder { radius: 0.049, half_length: 0.1 }]
+    {
         let mut two = Two::new(Shape::Docking(bore(false)), peg.clone());
         let gaps = |two: &mut Two, tilt: f64, x: f64| {
             let points = two.find(&at(0.0, 0.0, 0.0), &turned(tilt * Vec3::y(), x, 0.0, 0.03), 2e-3).to_vec();
-            let side = |sign: f64| points.iter().filter(|p| sign * p.normal_w.x > 0.5).map(|p| p.gap).fold(f64::INFINITY, f64::min);
+            let side = |sign: f64| {
+                points.iter().filter(|p| sign * p.normal_w.x > 0.5).map(|p| p.gap).fold(f64::INFINITY, f64::min)
+            };
             (side(1.0), side(-1.0))
         };
         // Balanced sideways, then tilted to a depth of 1e-5 m on both sides.

@@ -37,7 +37,9 @@ fn place(slide: &Slide, two: &mut Two, t: f64, shift: &mut f64) -> Frame {
     for attempt in 0..30 {
         let reach = if t == 0.0 && attempt < 20 { 0.1 } else { 1e-3 };
         let points = two.find(&at(0.0, 0.0, 0.0), &frame, reach);
-        let Some(deepest) = points.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)) else { panic!("{} at {t}: out of reach", slide.name) };
+        let Some(deepest) = points.iter().min_by(|p, q| p.gap.total_cmp(&q.gap)) else {
+            panic!("{} at {t}: out of reach", slide.name)
+        };
         // Touch exactly, where gaps are those of the surfaces, then press.
         let miss = deepest.gap - 1e-9;
         let slope = deepest.normal_w.dot(&press);
@@ -68,15 +70,17 @@ fn run(slide: &Slide) -> (f64, usize, usize) {
     let size = forces.iter().map(Vec3::norm).fold(0.0, f64::max);
     let bends: Vec<f64> = forces.windows(3).map(|f| (f[2] - 2.0 * f[1] + f[0]).norm()).collect();
     let worst = (0..bends.len()).max_by(|i, j| bends[*i].total_cmp(&bends[*j])).unwrap();
-    println!(
-        "{:34} bend {:.1e} at step {worst}, {changes} changes, {most} points",
-        slide.name,
-        bends[worst] / size
-    );
+    println!("{:34} bend {:.1e} at step {worst}, {changes} changes, {most} points", slide.name, bends[worst] / size);
     (bends[worst] / size, changes, most)
 }
 
-fn slide(name: &'static str, a: Docking, b: Shape, press: Option<Vec3>, pose: impl Fn(f64) -> Frame + 'static) -> Slide {
+fn slide(
+    name: &'static str,
+    a: Docking,
+    b: Shape,
+    press: Option<Vec3>,
+    pose: impl Fn(f64) -> Frame + 'static,
+) -> Slide {
     Slide { name, a: Shape::Docking(a), b, pose: Box::new(pose), press, changes: 0 }
 }
 
@@ -101,7 +105,9 @@ fn ball_slides() -> Vec<Slide> {
         slide("ball up a cone and over its rim", cone(), ball(r), Some(Vec3::z()), |t| at(0.08 + 0.08 * t, 0.01, 0.0)),
         slide("ball over a petal", petal(), ball(r), Some(-Vec3::x()), |t| at(0.18, -0.05 + 0.1 * t, 0.06 + 0.02 * t)),
         slide("ball round the edge of a petal", petal(), ball(r), Some(-Vec3::x()), |t| at(0.2, 0.02 + 0.06 * t, 0.05)),
-        slide("ball round a corner of a petal", petal(), ball(r), Some(-Vec3::x()), |t| at(0.1, 0.0 + 0.05 * t, 0.11 + 0.02 * t)),
+        slide("ball round a corner of a petal", petal(), ball(r), Some(-Vec3::x()), |t| {
+            at(0.1, 0.0 + 0.05 * t, 0.11 + 0.02 * t)
+        }),
     ]
 }
 
@@ -112,19 +118,34 @@ fn long_slides() -> Vec<Slide> {
     let wall = |r: f64| 0.05 - r + DEPTH;
     let along_y = Vec3::new(FRAC_PI_2, 0.0, 0.0);
     vec![
-        Slide { changes: 1, ..slide("capsule along a bore", bore(false), capsule.clone(), None, move |t| at(wall(0.02), 0.0, -0.045 + 0.1 * t)) },
+        Slide {
+            changes: 1,
+            ..slide("capsule along a bore", bore(false), capsule.clone(), None, move |t| {
+                at(wall(0.02), 0.0, -0.045 + 0.1 * t)
+            })
+        },
         slide("capsule round a bore", bore(false), capsule.clone(), None, move |t| {
             at(wall(0.02) * (TAU * t).cos(), wall(0.02) * (TAU * t).sin(), 0.02)
         }),
         slide("tilted capsule in a cone", cone(), capsule.clone(), Some(Vec3::z()), |t| {
-            turned(Vec3::new(0.1 * (TAU * t).cos(), 0.1 * (TAU * t).sin(), 0.0), 0.03 * (TAU * t).cos(), 0.03 * (TAU * t).sin(), 0.0)
+            turned(
+                Vec3::new(0.1 * (TAU * t).cos(), 0.1 * (TAU * t).sin(), 0.0),
+                0.03 * (TAU * t).cos(),
+                0.03 * (TAU * t).sin(),
+                0.0,
+            )
         }),
         // Its two points meet where it leaves the chord and are one from there.
-        Slide { changes: 1, ..slide("capsule across a ring", ring(), capsule.clone(), Some(Vec3::z()), move |t| {
-            Frame { pos: Vec3::new(0.15 + 0.05 * t, 0.0, 0.03), ..turned(along_y, 0.0, 0.0, 0.0) }
-        }) },
-        slide("capsule along a petal", petal(), capsule, Some(-Vec3::x()), move |t| {
-            Frame { pos: Vec3::new(0.16, 0.01, 0.03 + 0.05 * t), ..turned(along_y, 0.0, 0.0, 0.0) }
+        Slide {
+            changes: 1,
+            ..slide("capsule across a ring", ring(), capsule.clone(), Some(Vec3::z()), move |t| Frame {
+                pos: Vec3::new(0.15 + 0.05 * t, 0.0, 0.03),
+                ..turned(along_y, 0.0, 0.0, 0.0)
+            })
+        },
+        slide("capsule along a petal", petal(), capsule, Some(-Vec3::x()), move |t| Frame {
+            pos: Vec3::new(0.16, 0.01, 0.03 + 0.05 * t),
+            ..turned(along_y, 0.0, 0.0, 0.0)
         }),
         slide("cylinder round a bore", bore(true), cylinder.clone(), None, move |t| {
             at(wall(0.03) * (TAU * t).cos(), wall(0.03) * (TAU * t).sin(), -0.04)
@@ -132,8 +153,9 @@ fn long_slides() -> Vec<Slide> {
         slide("tilted cylinder in a cone", cone(), plate, Some(Vec3::z()), |t| {
             turned(Vec3::new(0.1 * (TAU * t).cos(), 0.1 * (TAU * t).sin(), 0.0), 0.01 * (TAU * t).cos(), 0.0, -0.03)
         }),
-        slide("cylinder across a ring", ring(), cylinder, Some(Vec3::z()), move |t| {
-            Frame { pos: Vec3::new(0.15 + 0.05 * t, 0.0, 0.04), ..turned(along_y, 0.0, 0.0, 0.0) }
+        slide("cylinder across a ring", ring(), cylinder, Some(Vec3::z()), move |t| Frame {
+            pos: Vec3::new(0.15 + 0.05 * t, 0.0, 0.04),
+            ..turned(along_y, 0.0, 0.0, 0.0)
         }),
     ]
 }
@@ -148,25 +170,45 @@ fn docking_slides() -> Vec<Slide> {
             Frame { rot: turn, pos: Vec3::new(0.0, 0.0, 0.03) }
         }),
         // From one corner along the tip's arc to the other: the arc's point comes and goes at the corners.
-        Slide { changes: 4, ..slide("plane rolls over a petal's tip", petal(), plane, Some(Vec3::z()), move |t| {
-            let turn = turned(Vec3::new(0.4 - 0.8 * t, 0.3, 0.0), 0.0, 0.0, 0.0).rot * turned(face_down, 0.0, 0.0, 0.0).rot;
-            Frame { rot: turn, pos: Vec3::new(0.07, 0.0, 0.14) }
-        }) },
-        slide("ring rolls round a ring", ring(), Shape::Docking(ring()), Some(Vec3::z()), move |t| {
-            Frame { pos: Vec3::new(0.0, 0.0, 0.04), ..turned(lean(0.05)(t), 0.0, 0.0, 0.0) }
+        Slide {
+            changes: 4,
+            ..slide("plane rolls over a petal's tip", petal(), plane, Some(Vec3::z()), move |t| {
+                let turn = turned(Vec3::new(0.4 - 0.8 * t, 0.3, 0.0), 0.0, 0.0, 0.0).rot
+                    * turned(face_down, 0.0, 0.0, 0.0).rot;
+                Frame { rot: turn, pos: Vec3::new(0.07, 0.0, 0.14) }
+            })
+        },
+        slide("ring rolls round a ring", ring(), Shape::Docking(ring()), Some(Vec3::z()), move |t| Frame {
+            pos: Vec3::new(0.0, 0.0, 0.04),
+            ..turned(lean(0.05)(t), 0.0, 0.0, 0.0)
         }),
-        slide("small ring round a cone", cone(), Shape::Docking(Docking::Ring { major_radius: 0.05, minor_radius: 0.01 }), Some(Vec3::z()), move |t| {
-            Frame { pos: Vec3::new(0.01 * (TAU * t).cos(), 0.01 * (TAU * t).sin(), -0.03), ..turned(lean(0.1)(t), 0.0, 0.0, 0.0) }
+        slide(
+            "small ring round a cone",
+            cone(),
+            Shape::Docking(Docking::Ring { major_radius: 0.05, minor_radius: 0.01 }),
+            Some(Vec3::z()),
+            move |t| Frame {
+                pos: Vec3::new(0.01 * (TAU * t).cos(), 0.01 * (TAU * t).sin(), -0.03),
+                ..turned(lean(0.1)(t), 0.0, 0.0, 0.0)
+            },
+        ),
+        slide("ring along a petal", petal(), Shape::Docking(ring()), Some(-Vec3::x()), |t| {
+            turned(Vec3::new(0.02, 0.05, 0.0), -0.03, 0.0, 0.04 + 0.05 * t)
         }),
-        slide("ring along a petal", petal(), Shape::Docking(ring()), Some(-Vec3::x()), |t| turned(Vec3::new(0.02, 0.05, 0.0), -0.03, 0.0, 0.04 + 0.05 * t)),
-        Slide { changes: 4, ..slide("petal edge along a petal", petal(), Shape::Docking(petal()), Some(Vec3::y()), |t| {
-            turned(Vec3::new(0.0, 0.1, 0.6), 0.0, 0.16, 0.02 - 0.04 * t)
-        }) },
-        Slide { changes: 2, ..slide("petal bulging against a petal", petal(), Shape::Docking(petal()), Some(Vec3::x()), |t| {
-            let flipped = turned(std::f64::consts::PI * Vec3::y(), 0.0, 0.0, 0.0);
-            let crossed = turned(0.3 * Vec3::x(), 0.0, 0.0, 0.0);
-            Frame { rot: crossed.rot * flipped.rot, pos: Vec3::new(0.33, 0.01 - 0.02 * t, 0.12) }
-        }) },
+        Slide {
+            changes: 4,
+            ..slide("petal edge along a petal", petal(), Shape::Docking(petal()), Some(Vec3::y()), |t| {
+                turned(Vec3::new(0.0, 0.1, 0.6), 0.0, 0.16, 0.02 - 0.04 * t)
+            })
+        },
+        Slide {
+            changes: 2,
+            ..slide("petal bulging against a petal", petal(), Shape::Docking(petal()), Some(Vec3::x()), |t| {
+                let flipped = turned(std::f64::consts::PI * Vec3::y(), 0.0, 0.0, 0.0);
+                let crossed = turned(0.3 * Vec3::x(), 0.0, 0.0, 0.0);
+                Frame { rot: crossed.rot * flipped.rot, pos: Vec3::new(0.33, 0.01 - 0.02 * t, 0.12) }
+            })
+        },
     ]
 }
 

@@ -4,7 +4,10 @@ use crate::support::*;
 
 fn bits(points: &[ContactPoint]) -> Vec<u64> {
     let of = |v: &Vec3| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits()];
-    points.iter().flat_map(|p| [vec![p.feature, p.gap.to_bits()], [of(&p.point_a_w), of(&p.normal_w)].concat()].concat()).collect()
+    points
+        .iter()
+        .flat_map(|p| [vec![p.feature, p.gap.to_bits()], [of(&p.point_a_w), of(&p.normal_w)].concat()].concat())
+        .collect()
 }
 
 fn pairs() -> impl Iterator<Item = (Shape, Shape)> {
@@ -57,7 +60,10 @@ fn rotating_the_world_changes_nothing_beyond_round_off() {
             assert_eq!(points.len(), moved.len());
             for (p, q) in points.iter().zip(moved) {
                 assert_eq!(p.feature, q.feature);
-                assert!((p.gap - q.gap).abs() < 1e-12 && (world.rot * p.normal_w - q.normal_w).norm() < 1e-12, "{p:?} {q:?}");
+                assert!(
+                    (p.gap - q.gap).abs() < 1e-12 && (world.rot * p.normal_w - q.normal_w).norm() < 1e-12,
+                    "{p:?} {q:?}"
+                );
                 assert!((world.point(&p.point_a_w) - q.point_a_w).norm() < 1e-12, "{p:?} {q:?}");
             }
             told += points.len();
@@ -72,7 +78,8 @@ fn points_are_finite_consistent_and_without_history() {
     for (one, other) in pairs() {
         let mut used = Two::new(one.clone(), other.clone());
         for k in 0..20 {
-            let (a, b) = if k == 0 { (at(0.0, 0.0, 0.0), at(0.0, 0.0, 0.0)) } else { (dice.frame(0.1), dice.frame(0.1)) };
+            let (a, b) =
+                if k == 0 { (at(0.0, 0.0, 0.0), at(0.0, 0.0, 0.0)) } else { (dice.frame(0.1), dice.frame(0.1)) };
             let points = used.find(&a, &b, 0.01).to_vec();
             for p in &points {
                 assert!(p.gap.is_finite() && (p.normal_w.norm() - 1.0).abs() < 1e-12, "{one:?} {other:?} {p:?}");
@@ -141,6 +148,7 @@ fn sizes_out_of_range_are_named() {
     );
     let thin = Docking::Ring { major_radius: 0.1, minor_radius: 0.0 };
     assert_eq!(message(thin), "collider \"port\": minor radius is 0 m; it must be finite and greater than zero");
-    let endless = Docking::Petal { base_radius: 0.1, tip_radius: 0.1, height: f64::NAN, half_sector: 0.3, thickness: 0.01 };
+    let endless =
+        Docking::Petal { base_radius: 0.1, tip_radius: 0.1, height: f64::NAN, half_sector: 0.3, thickness: 0.01 };
     assert!(message(endless).contains("height is NaN m"));
 }

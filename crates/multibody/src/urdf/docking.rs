@@ -34,8 +34,12 @@ static CONE: &[Attribute] = &[
     may("throat_radius", Kind::NonNegative),
     may("wall", Kind::Positive),
 ];
-static TUBE: &[Attribute] =
-    &[must("radius", Kind::Positive), must("depth", Kind::Positive), may("wall", Kind::Positive), may("floor", Kind::Flag)];
+static TUBE: &[Attribute] = &[
+    must("radius", Kind::Positive),
+    must("depth", Kind::Positive),
+    may("wall", Kind::Positive),
+    may("floor", Kind::Flag),
+];
 static TORUS: &[Attribute] = &[must("major_radius", Kind::Positive), must("minor_radius", Kind::Positive)];
 static PLATE: &[Attribute] = &[
     must("base_radius", Kind::Positive),

@@ -30,13 +30,15 @@ pub(super) fn docking_of_kind(kind: &ShapeKind) -> Option<DockingGeometry> {
         ShapeKind::Ring { major_radius_m, minor_radius_m } => {
             DockingGeometry::Ring { major_radius: major_radius_m, minor_radius: minor_radius_m }
         }
-        ShapeKind::Petal { base_radius_m, tip_radius_m, height_m, half_sector_deg, thickness_m } => DockingGeometry::Petal {
-            base_radius: base_radius_m,
-            tip_radius: tip_radius_m,
-            height: height_m,
-            half_sector: half_sector_deg.to_radians(),
-            thickness: thickness_m,
-        },
+        ShapeKind::Petal { base_radius_m, tip_radius_m, height_m, half_sector_deg, thickness_m } => {
+            DockingGeometry::Petal {
+                base_radius: base_radius_m,
+                tip_radius: tip_radius_m,
+                height: height_m,
+                half_sector: half_sector_deg.to_radians(),
+                thickness: thickness_m,
+            }
+        }
         ShapeKind::Box { .. }
         | ShapeKind::Sphere { .. }
         | ShapeKind::Cylinder { .. }

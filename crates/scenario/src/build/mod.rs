@@ -11,9 +11,9 @@ mod start;
 mod vehicles;
 
 pub(crate) use actuators::ActuatorTable;
+pub use docking::docking_visuals;
 pub(crate) use faults::Faults;
 pub(crate) use kinematics::{calc_error, halves, solve_pose};
-pub use docking::docking_visuals;
 pub use shapes::shape_of_geometry;
 
 use crate::error::ScenarioErrors;

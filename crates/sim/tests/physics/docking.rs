@@ -1,6 +1,6 @@
 //! Docking geometry at work: what rests in a drogue, a bore or on a ring is in balance, and guide petals mate.
 
-use super::support::{Setup, bristle, hunt_crossley, link, linear, robot, run, shape, spec, twist, world};
+use super::support::{Setup, bristle, hunt_crossley, linear, link, robot, run, shape, spec, twist, world};
 use contact::{Docking, Normal, Shape};
 use sim::{Base, Integrator, PairLaw, ShapeSpec, World};
 use spatial::{Pose, Rot, Vec3};
@@ -84,7 +84,9 @@ fn peg_in_a_bore_tilts_until_it_bears_on_two_points() {
     // Radius 19.8 in a bore of 20 mm, so stiff that a point does not reach its neighbours round the bore; hung by gravity across the bore: tilted by its weight outside of the mouth.
     let across = Vec3::new(-GRAVITY, 0.0, 0.0);
     let bore = Docking::InnerCylinder { radius: 0.02, depth: 0.06, wall: 0.01, floor: false };
-    for peg in [Shape::Capsule { radius: 0.0198, half_length: 0.06 }, Shape::Cylinder { radius: 0.0198, half_length: 0.06 }] {
+    for peg in
+        [Shape::Capsule { radius: 0.0198, half_length: 0.06 }, Shape::Cylinder { radius: 0.0198, half_length: 0.06 }]
+    {
         let mut world = body_in(bore, peg.clone(), rough(0.8, 1e6), across);
         world.state_mut().bases[0] = Pose::translation(0.0, 0.0, 0.02);
         run(&mut world, 10_000);
@@ -152,7 +154,8 @@ fn ball_that_circles_in_a_drogue_keeps_its_energy() {
 /// offset and a clocking error: the petals guide it until the rings lie on each other, centred and clocked.
 #[test]
 fn three_petals_guide_their_twin_home() {
-    let petal = Docking::Petal { base_radius: 0.2, tip_radius: 0.08, height: 0.12, half_sector: 0.68, thickness: 0.012 };
+    let petal =
+        Docking::Petal { base_radius: 0.2, tip_radius: 0.08, height: 0.12, half_sector: 0.68, thickness: 0.012 };
     let ring = Docking::Ring { major_radius: 0.3, minor_radius: 0.02 };
     let half = |vehicle: Option<usize>| -> Vec<ShapeSpec> {
         let mut shapes = vec![shape("ring", vehicle, Shape::Docking(ring))];
