@@ -106,6 +106,10 @@ fn ask(part: &Part, frame: &Frame, (point, normal): (&Vec3, &Vec3), margin: f64)
             None => return Some(convex_ball(convex, frame, point, 0.0)),
         },
         Solid::HalfSpace(_) => return Some(plane_ball(frame, point, 0.0)),
+        Solid::Docking(sheet, ..) => {
+            let near = sheet.nearest(&local);
+            (near.normal, near.distance - sheet.radius)
+        }
         Solid::Bed(_) => return None,
         Solid::Other(twin, _) => match (twin.shape.as_convex_polyhedron(), twin.shape.as_trimesh()) {
             (Some(hull), _) => asked.on_hull(hull)?,
