@@ -141,8 +141,8 @@ impl RayCast for DockingShape {
                 return Some(RayIntersection::new(time, to_parry(&(side * near.normal)), FeatureId::Face(0)));
             }
             time += distance / speed;
-            // Also where the ray has no direction, and `time` is no number.
-            if !(time <= longest) {
+            // A ray without a direction gives no number.
+            if time.is_nan() || time > longest {
                 return None;
             }
         }

@@ -4,7 +4,7 @@
 //! functions. 10⁵ samples of the core (of both cores, for two docking shapes), then a pattern search from the best of them.
 
 use crate::support::*;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// The pattern search halves its step until 1e-9 of the range; distances are then exact to its square over a radius, and
 /// along kinks to the step itself: 1e-9 of half a metre.
@@ -154,7 +154,7 @@ fn gaps_are_those_of_a_search_of_both_surfaces() {
     let mut worst = 0.0_f64;
     for i in 0..dockings().len() {
         for j in 0..shapes().len() {
-            let (w, n) = check_pair(i, j, if j < 5 { 4 } else { 8 });
+            let (w, n) = check_pair(i, j, if j < 5 { 2 } else { 8 });
             println!("pair {i} {j}: {n} cases, largest excess over the search {w:.1e} m");
             worst = worst.max(w);
         }
@@ -201,5 +201,4 @@ fn normals_are_the_gradients_of_the_gaps() {
     }
     println!("{told} gradients");
     assert!(told > 1000);
-    assert_eq!(TAU, 2.0 * PI);
 }
