@@ -5,8 +5,8 @@ use super::shapes::place_of;
 use crate::spec::{self, Scenario};
 use multibody::calc_locked_inertia;
 use sim::{
-    Anchor, Base, Bushing, Capture, Latch, Mechanism, MechanismKind, Model, Overload, PullIn, Strength, Strut, StrutSides,
-    VehicleSpec, Weld, World,
+    Anchor, Base, Bushing, Capture, Latch, Mechanism, MechanismKind, Model, Overload, PullIn, Strength, Strut,
+    StrutSides, VehicleSpec, Weld, World,
 };
 use spatial::{Mat3, Vec3};
 use std::sync::Arc;

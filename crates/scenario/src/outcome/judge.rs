@@ -140,7 +140,11 @@ impl Judge {
         let (now, account) = (Energy::of(world), world.state().account);
         let change = now.kinetic - self.energy_start.kinetic + now.potential - self.energy_start.potential;
         let external = if world.model().environment.is_still() { account.external_work } else { 0.0 };
-        let work = account.actuator_work + account.passive_joint_work + account.contact_work + account.mechanism_work + external;
+        let work = account.actuator_work
+            + account.passive_joint_work
+            + account.contact_work
+            + account.mechanism_work
+            + external;
         add("kinetic_energy_j", now.kinetic, "at the end");
         add("actuator_work_j", account.actuator_work, "work of the joint actuators");
         add("contact_work_j", account.contact_work, "work of contact forces: negative, stored or dissipated");

@@ -64,7 +64,11 @@ impl MechanismWatch {
         let holding = world.mechanisms().filter(|m| is_latch(m.index) && m.status == MechanismStatus::Engaged).count();
         let travel = self.travel.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
         add("latches_engaged", holding.into(), "latches that hold at the end");
-        add("latch_engaged_s", self.engaged_at.map_or(Value::Null, Value::from), "time at which the first latch engaged");
+        add(
+            "latch_engaged_s",
+            self.engaged_at.map_or(Value::Null, Value::from),
+            "time at which the first latch engaged",
+        );
         add("mechanisms_let_go", self.let_go.into(), "how often a latch let go or broke, or a weld broke");
         add("peak_hold_force_n", self.peak_force.into(), "largest force in a latch, weld or bushing");
         add("peak_hold_moment_n_m", self.peak_moment.into(), "largest moment in a latch, weld or bushing");

@@ -24,7 +24,7 @@ impl Target {
             ActuatorKind::JointDrive { .. } => Self::Position,
             ActuatorKind::JointEffort { .. } | ActuatorKind::Thruster { .. } | ActuatorKind::LatchRelease { .. } => {
                 Self::Effort
-            },
+            }
         }
     }
 
