@@ -113,7 +113,12 @@ fn measure(impact: &Impact, integrator: Integrator, step: f64, phase: f64) -> Re
 }
 
 /// Height (m) and speed (m/s) at every millisecond until `duration`, touch-down half a millisecond after the start.
-pub(super) fn fly(impact: &Impact, integrator: Integrator, step: f64, duration: f64) -> Result<Vec<Vec<f64>>, LabError> {
+pub(super) fn fly(
+    impact: &Impact,
+    integrator: Integrator,
+    step: f64,
+    duration: f64,
+) -> Result<Vec<Vec<f64>>, LabError> {
     let bench = Bench::new("integrators", step).integrator(integrator);
     let mut rig = build(impact, 5e-4 * impact.speed, bench)?;
     let every = (1e-3 / step).round() as u64;

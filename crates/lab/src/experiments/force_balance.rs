@@ -19,11 +19,8 @@ use sim::{ActuatorKind, Base, PairLaw, ShapeSpec};
 use spatial::{Pose, Rot, Vec3, Wrench};
 
 /// The entry in the catalogue.
-pub const EXPERIMENT: Experiment = Experiment {
-    name: "force-balance",
-    question: "Do the forces on a body at rest add up to nothing?",
-    run,
-};
+pub const EXPERIMENT: Experiment =
+    Experiment { name: "force-balance", question: "Do the forces on a body at rest add up to nothing?", run };
 
 const MASS: f64 = 1.0;
 const WEIGHT: f64 = MASS * GRAVITY;

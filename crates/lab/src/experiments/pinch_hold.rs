@@ -110,8 +110,7 @@ fn build(grip: f64, step: f64) -> Result<Rig, LabError> {
         bench.add_shape(Some(pads), link, Shape::Cuboid { half_extents: PAD.into() });
     }
     bench.add_shape(Some(body), 0, Shape::Capsule { radius: RADIUS, half_length: HALF_LENGTH });
-    let bristle =
-        Bristle { mu_static: MU, mu_kinetic: MU, stiffness: STIFFNESS, damping: 100.0, ..Bristle::default() };
+    let bristle = Bristle { mu_static: MU, mu_kinetic: MU, stiffness: STIFFNESS, damping: 100.0, ..Bristle::default() };
     bench.pair("pads", "capsule", contact_law(STIFFNESS, 100.0, bristle));
     let close = bench.add_actuator("close", ActuatorKind::JointEffort { coordinate: 0, limit: 1e3 });
     let mut rig = bench.build()?;

@@ -51,7 +51,8 @@ struct Case {
 fn run(options: &Options) -> Result<Outcome, LabError> {
     let steps = if options.quick { 3_000 } else { 10_000 };
     let mut outcome = Outcome::default();
-    let mut chart = Chart::new("Second difference of the force", "share of the path", "|Δ²f|/|f|").logarithmic(false, true);
+    let mut chart =
+        Chart::new("Second difference of the force", "share of the path", "|Δ²f|/|f|").logarithmic(false, true);
     for case in cases() {
         let found = slide(&case, steps)?;
         let name = case.name;
@@ -131,12 +132,8 @@ fn balls_on_surfaces() -> Vec<Case> {
     let cuboid = || Shape::Cuboid { half_extents: half };
     let cylinder = || Shape::Cylinder { radius: RADIUS, half_length: HALF_LENGTH };
     let top = half.z + edge;
-    let around = Piece::Arc {
-        centre: Vec3::zeros(),
-        arm: Vec3::new(reach, 0.0, 0.0),
-        axis: Vec3::z(),
-        angle: 0.5 * PI,
-    };
+    let around =
+        Piece::Arc { centre: Vec3::zeros(), arm: Vec3::new(reach, 0.0, 0.0), axis: Vec3::z(), angle: 0.5 * PI };
     let (rim, cap) = (reach, HALF_LENGTH + edge);
     vec![
         case("ball on ball", Shape::Ball { radius: RADIUS }, vec![arc([0.0; 3], [0.0, 0.0, reach], FRAC_PI_2)]),

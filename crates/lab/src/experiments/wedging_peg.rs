@@ -17,11 +17,8 @@ use sim::{ActuatorKind, Base, ShapeSpec, World};
 use spatial::{Pose, Vec3};
 
 /// The entry in the catalogue.
-pub const EXPERIMENT: Experiment = Experiment {
-    name: "wedging-peg",
-    question: "When does a peg jam in its bore, and when does it stay wedged?",
-    run,
-};
+pub const EXPERIMENT: Experiment =
+    Experiment { name: "wedging-peg", question: "When does a peg jam in its bore, and when does it stay wedged?", run };
 
 const HALF_WIDTH: f64 = 0.02;
 const CLEARANCE: f64 = 1e-4;
@@ -62,7 +59,7 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
 }
 
 fn peg(depth: f64, mu: f64) -> Peg {
-    Peg { half_width: HALF_WIDTH, bore_half_width: HALF_WIDTH + 0.5 * CLEARANCE, depth, mu }
+    Peg { half_width: HALF_WIDTH, bore_half_width: HALF_WIDTH + 0.5 * CLEARANCE, lip: 0.0, depth, mu }
 }
 
 /// The peg in two-point contact, four thrusters on it: the push at +SPAN and −SPAN across its axis, and a lateral force to the
@@ -75,20 +72,16 @@ fn build(peg: &Peg, step: f64) -> Result<Rig, LabError> {
         add_wall(&mut bench, side * (peg.bore_half_width + 0.05));
     }
     bench.add_shape(Some(body), 0, Shape::Cuboid { half_extents: half });
-    let bristle = Bristle {
-        mu_static: peg.mu,
-        mu_kinetic: peg.mu,
-        stiffness: STIFFNESS,
-        damping: 1e3,
-        ..Bristle::default()
-    };
+    let bristle =
+        Bristle { mu_static: peg.mu, mu_kinetic: peg.mu, stiffness: STIFFNESS, damping: 1e3, ..Bristle::default() };
     bench.pair("world", "peg", contact_law(STIFFNESS, 1e3, bristle));
     let (sin, cos) = peg.calc_tilt().sin_cos();
     let (down, right) = (Vec3::new(sin, 0.0, -cos), Vec3::new(cos, 0.0, sin));
     let places = [(SPAN, down), (-SPAN, down), (0.0, right), (0.0, -right)];
     for (k, (x, direction)) in places.into_iter().enumerate() {
         let position = Vec3::new(x, 0.0, 0.0);
-        bench.add_actuator(&format!("push{k}"), ActuatorKind::Thruster { body: 0, position, direction, max_force: 1e6 });
+        bench
+            .add_actuator(&format!("push{k}"), ActuatorKind::Thruster { body: 0, position, direction, max_force: 1e6 });
     }
     let mut rig = bench.build()?;
     let [x, z] = peg.calc_tip();

@@ -1,9 +1,9 @@
 //! The order in which the detector finds things changes no bit.
 
-use lab::bench::{Bench, Rig};
-use lab::scene::{ball_robot, box_robot, contact_law, cylinder_robot};
 use contact::Shape;
 use friction::Bristle;
+use lab::bench::{Bench, Rig};
+use lab::scene::{ball_robot, box_robot, contact_law, cylinder_robot};
 use sim::{Base, Integrator};
 use spatial::Twist;
 

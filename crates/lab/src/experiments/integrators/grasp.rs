@@ -44,8 +44,7 @@ fn build(integrator: Integrator, step: f64) -> Result<Rig, LabError> {
         bench.add_shape(Some(hand), finger, Shape::Cuboid { half_extents: PAD.into() });
     }
     bench.add_shape(Some(bar), 0, Shape::Cuboid { half_extents: BAR.into() });
-    let bristle =
-        Bristle { mu_static: 0.5, mu_kinetic: 0.5, stiffness: 5e4, damping: 30.0, ..Bristle::default() };
+    let bristle = Bristle { mu_static: 0.5, mu_kinetic: 0.5, stiffness: 5e4, damping: 30.0, ..Bristle::default() };
     bench.pair("gripper", "bar", contact_law(5e4, 50.0, bristle));
     for coordinate in [0, 1] {
         let kind = ActuatorKind::JointDrive { coordinate, stiffness: 2e3, damping: 100.0, limit: 50.0 };
