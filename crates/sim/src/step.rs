@@ -289,7 +289,10 @@ fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
         let gain = relative_gain(model, ws, &touch);
         let force = touch.out.line - touch.out.g * gain / h;
         let next = touch.eval(&model.laws[touch.pair as usize], &(touch.u + touch.carried + gain), h);
-        check.add(touch.pair, (next.law - force).norm(), next.law.norm());
+        // A bound of friction that the normal force does not bear out is a miss as well.
+        let law = &model.laws[touch.pair as usize];
+        let unborne = law.friction.map_or(0.0, |f| f.highest_level() * (next.pressing[0] - next.normal_force).abs());
+        check.add(touch.pair, (next.law - force).norm().max(unborne), next.law.norm());
         touch.out = next;
         touch.out.force = force;
         ws.touches[i] = touch;

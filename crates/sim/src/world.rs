@@ -53,7 +53,10 @@ const MAX_SPEED: f64 = 1e6;
 
 impl World {
     /// A world at a state.
-    pub fn new(model: Arc<Model>, state: State) -> Self {
+    pub fn new(model: Arc<Model>, mut state: State) -> Self {
+        // A state from before a model had mechanisms knows nothing of them: they begin as at the start.
+        let known = state.mechanisms.len();
+        state.mechanisms.extend(model.mechanisms.iter().skip(known).map(|m| m.kind.start()));
         let ws = Workspace::new(&model);
         let mut world = Self { model, state, ws, is_fresh: false };
         world.refresh();

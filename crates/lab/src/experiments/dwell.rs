@@ -29,7 +29,7 @@ const POINT: f64 = 1e6;
 /// Stiffness of the four bristles together, N/m.
 const STIFFNESS: f64 = 1e5;
 /// Speed of the pull after the dwell, m/s.
-const PULL: f64 = 0.01;
+const PULL: f64 = 2e-4;
 /// How much the lead steps back when it stops, m: the bristle sticks beyond doubt.
 const BACK: f64 = 5e-6;
 
