@@ -59,6 +59,8 @@ pub(crate) struct Part {
     /// Half extents of the piece's bounding box about `centre`, piece axes; infinite for a half-space.
     pub(crate) half: Vec3,
     pub(crate) centre: Vec3,
+    /// Whether it is a mesh with an inside.
+    pub(crate) closed: bool,
 }
 
 /// Colliders and the pairs of them that are looked at.
@@ -133,7 +135,8 @@ fn add_parts(collider: &Collider, shape: &Shape, pose: &Pose, parts: &mut Vec<Pa
     }
     let solid = solid_of(collider, shape)?;
     let (half, centre) = bounds(&solid);
-    parts.push(Part { frame_bp: Frame::from(pose), solid, half, centre });
+    let closed = crate::decompose_measure::is_closed_mesh(shape);
+    parts.push(Part { frame_bp: Frame::from(pose), solid, half, centre, closed });
     Ok(())
 }
 
