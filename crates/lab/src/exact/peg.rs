@@ -5,6 +5,8 @@
 //!
 //!   (2R − r cos θ) cos θ − l sin θ = r
 //!
+//! (a mouth rounded by w touches at the place of its arc where the flank is tangent: R + w in place of the mouth's R, r + w of r).
+//!
 //! A force (Fₓ, −P) that acts at an offset e across the peg holds two contact forces, each in its friction cone. On the
 //! verge of sliding in, both frictions point up the walls at μ N; balance of forces gives N₁ and N₂, balance of moments the
 //! offset e* beyond which the peg jams. For θ → 0 and a pure push that is
@@ -22,7 +24,9 @@ pub struct Peg {
     pub half_width: f64,
     /// Half the bore's width, m.
     pub bore_half_width: f64,
-    /// Depth of the tip's centre below the mouth, m.
+    /// Radius by which the mouth's edge is rounded, m; zero: sharp.
+    pub lip: f64,
+    /// Depth of the tip's centre below the mouth (below the middle of its rounding), m.
     pub depth: f64,
     /// Coefficient of friction.
     pub mu: f64,
@@ -39,8 +43,8 @@ impl Peg {
 
     /// Lean of the peg in two-point contact, rad; positive: its upper end to the right.
     pub fn calc_tilt(&self) -> f64 {
-        let (r, bore, l) = (self.half_width, 2.0 * self.bore_half_width, self.depth);
-        let off = |tilt: f64| (bore - r * tilt.cos()) * tilt.cos() - l * tilt.sin() - r;
+        let (r, bore, l) = (self.half_width, 2.0 * self.bore_half_width + self.lip, self.depth);
+        let off = |tilt: f64| (bore - r * tilt.cos()) * tilt.cos() - l * tilt.sin() - r - self.lip;
         let (mut low, mut high) = (0.0, 0.5);
         for _ in 0..80 {
             let mid = 0.5 * (low + high);
@@ -60,7 +64,7 @@ impl Peg {
         let (sin, cos) = self.calc_tilt().sin_cos();
         let tip = self.calc_tip();
         let corner = [tip[0] - self.half_width * cos, tip[1] + self.half_width * sin];
-        let mouth = [self.bore_half_width, 0.0];
+        let mouth = [self.bore_half_width + self.lip * (1.0 - cos), self.lip * sin];
         // Directions of the total contact forces, normal plus friction up the wall and up the peg.
         let at_corner = [1.0, self.mu];
         let at_mouth = [self.mu * sin - cos, sin + self.mu * cos];
@@ -89,7 +93,7 @@ mod tests {
     use super::*;
 
     fn peg(clearance: f64, depth: f64, mu: f64) -> Peg {
-        Peg { half_width: 0.02, bore_half_width: 0.02 + 0.5 * clearance, depth, mu }
+        Peg { half_width: 0.02, bore_half_width: 0.02 + 0.5 * clearance, lip: 0.0, depth, mu }
     }
 
     #[test]
@@ -107,11 +111,17 @@ mod tests {
 
     #[test]
     fn contact_points_lie_on_walls_and_flank() {
-        let peg = peg(4e-4, 0.03, 0.3);
+        let sharp = peg(4e-4, 0.03, 0.3);
+        for peg in [sharp, Peg { lip: 5e-3, ..sharp }] {
+            touches_twice(&peg);
+        }
+    }
+
+    fn touches_twice(peg: &Peg) {
         let (sin, cos) = peg.calc_tilt().sin_cos();
         let tip = peg.calc_tip();
         assert!((tip[0] - peg.half_width * cos + peg.bore_half_width).abs() < 1e-15);
-        let flank = (peg.bore_half_width - tip[0]) * cos + tip[1] * sin;
-        assert!((flank - peg.half_width).abs() < 1e-12);
+        let flank = (peg.bore_half_width + peg.lip - tip[0]) * cos + tip[1] * sin;
+        assert!((flank - peg.half_width - peg.lip).abs() < 1e-12);
     }
 }

@@ -200,7 +200,7 @@ fn add_charts(outcome: &mut Outcome, throws: &[(&str, Throw, Flight)]) {
         speed = speed
             .line(format!("speed, {name}"), thin(&flight.speed))
             .line(format!("slip, {name}"), thin(&flight.slip))
-            .marks(format!("5/7 of it, {name}"), vec![(throw.time(), throw.final_velocity().norm())]);
+            .marks(format!("when it rolls, closed form, {name}"), vec![(throw.time(), throw.final_velocity().norm())]);
     }
     outcome.charts.extend([path, speed]);
 }

@@ -59,7 +59,7 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
 }
 
 fn peg(depth: f64, mu: f64) -> Peg {
-    Peg { half_width: HALF_WIDTH, bore_half_width: HALF_WIDTH + 0.5 * CLEARANCE, depth, mu }
+    Peg { half_width: HALF_WIDTH, bore_half_width: HALF_WIDTH + 0.5 * CLEARANCE, lip: 0.0, depth, mu }
 }
 
 /// The peg in two-point contact, four thrusters on it: the push at +SPAN and −SPAN across its axis, and a lateral force to the

@@ -6,6 +6,7 @@
 use super::{CANDIDATES, FINE, Track, calc_error};
 use crate::bench::{Bench, Rig};
 use crate::exact::slider::Slider;
+use crate::exact::stick_slip::StickSlip;
 use crate::scene::{BLOCK, GANTRY, GANTRY_BLOCK, GRAVITY, box_robot, contact_law, gantry_robot, settle_gantry};
 use crate::{Chart, Figure, LabError, Options, Outcome};
 use contact::Shape;
@@ -74,12 +75,26 @@ fn ride(mut rig: Rig, duration: f64) -> Result<Ride, LabError> {
 /// Six cycles against RK4 at 1 µs.
 pub(super) fn add_stick_slip(outcome: &mut Outcome, options: &Options) -> Result<(), LabError> {
     const STIFFNESS: f64 = 1e6;
+    const DAMPING: f64 = 100.0;
     let (fine, duration) = if options.quick { (5.0 * FINE, 0.25) } else { (FINE, 0.4) };
-    let reference = ride(build(Integrator::RungeKutta4, fine, STIFFNESS, 100.0)?, duration)?;
+    let reference = ride(build(Integrator::RungeKutta4, fine, STIFFNESS, DAMPING)?, duration)?;
+    let exact = StickSlip {
+        mass: SLIDER.mass,
+        pull_stiffness: SPRING,
+        pull_speed: SLIDER.belt,
+        bound_static: SLIDER.levels[0],
+        bound_kinetic: SLIDER.levels[1],
+        bristle_stiffness: 4.0 * STIFFNESS,
+        bristle_damping: 4.0 * DAMPING,
+    };
+    if let Some(cycle) = exact.cycle(duration) {
+        let name = "stick–slip, RK4 at 1 µs: period against the event-exact solution";
+        outcome.figures.push(Figure::relative(name, reference.period, cycle.period, "s", 1e-3));
+    }
     let seen = |track: &Track| track.iter().enumerate().map(|(k, y)| (1e-3 * (k + 1) as f64, 1e3 * y[0])).collect();
     let mut chart = Chart::new("Stick–slip on a belt", "time, s", "place, mm").theory("RK4", seen(&reference.track));
     for (name, integrator, step) in CANDIDATES {
-        let found = ride(build(integrator, step, STIFFNESS, 100.0)?, duration)?;
+        let found = ride(build(integrator, step, STIFFNESS, DAMPING)?, duration)?;
         let place = calc_error(&found.track, &reference.track, 0..1);
         outcome.figures.extend([
             Figure::shown(format!("stick–slip, {name}: place"), place, 0.0, "m"),
