@@ -4,6 +4,7 @@
 //! should be and whether they are, charts, and where there is something to see the log of a run with its scene.
 
 mod outcome;
+pub mod real;
 
 pub use outcome::{Allowed, Chart, Curve, Experiment, Figure, LabError, Options, Outcome};
 
