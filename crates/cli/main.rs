@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout)] // a command prints
 
 mod check;
+mod lab;
 mod live;
 mod new;
 mod progress;
@@ -47,6 +48,8 @@ enum Subcommands {
     New(new::Arguments),
     /// Show a URDF, or a scenario at t = 0
     View(view::Arguments),
+    /// Small experiments on contact and friction, each figure beside its closed form
+    Lab(lab::Arguments),
     /// Print the JSON Schema of the scenario file
     Schema,
 }
@@ -68,6 +71,7 @@ fn main() -> ExitCode {
         Subcommands::Check(arguments) => check::main(&arguments),
         Subcommands::New(arguments) => new::main(&arguments),
         Subcommands::View(arguments) => view::main(&arguments),
+        Subcommands::Lab(arguments) => lab::main(&arguments),
         Subcommands::Schema => schema::main(),
     };
     match result {

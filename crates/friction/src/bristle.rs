@@ -1,4 +1,4 @@
-//! The law and its derivative.
+//! The extended bristle law and its derivative.
 //!
 //! With P = 1 − n nᵀ the projector on the plane (n is not needed: all vectors lie in it, so the derivative is given by
 //! its action on them), K = k + c/τ and s⁺ the trial deflection:
@@ -7,9 +7,13 @@
 //!   slip    −∂f/∂s⁺ = K (s_max/|s⁺|)(1 − ŝŝᵀ)                 turning only: along ŝ the force is at its bound
 //!   where the damper overshoots the bound, f̂ takes ŝ's place and μ fₙ/|f_trial| multiplies.
 //!
-//! The dependence on fₙ is left out here: it is not symmetric, and a solver that re-solves sees it in the next pass.
+//! On an ellipse the normal of the ellipse takes ŝ's place. The dependence on fₙ is left out here: it is not symmetric,
+//! and a solver that re-solves sees it in the next pass.
 
-use nalgebra::{Matrix3, Vector3};
+use crate::ellipse::Ellipse;
+use crate::levels::Levels;
+use crate::trial::{Brush, BrushRate, FrictionError, Slope, Trial, check_not_negative, check_positive};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Parameters of the extended bristle law, SI. Neutral where it says so.
@@ -19,8 +23,12 @@ pub struct Bristle {
     pub mu_static: f64,
     /// Level in fast sliding, 1; neutral: equal to `mu_static`.
     pub mu_kinetic: f64,
-    /// Speed over which the level falls (Stribeck), m/s; only its size against the slip speed counts.
+    /// Speed over which the level falls (Stribeck), m/s; zero: it drops where the bristle breaks away.
     pub stribeck_speed: f64,
+    /// Time constant with which the static level returns at rest, s; neutral: 0.
+    pub dwell_time: f64,
+    /// Level across the grain over that along it; neutral: 1.
+    pub across: f64,
     /// Stiffness of one point's bristle, N/m.
     pub stiffness: f64,
     /// Damping of the bristle, N·s/m; neutral: 0.
@@ -31,95 +39,49 @@ pub struct Bristle {
 
 impl Default for Bristle {
     fn default() -> Self {
-        Self { mu_static: 0.0, mu_kinetic: 0.0, stribeck_speed: 1e-3, stiffness: 1e5, damping: 0.0, viscous: 0.0 }
+        Self {
+            mu_static: 0.0,
+            mu_kinetic: 0.0,
+            stribeck_speed: 1e-3,
+            dwell_time: 0.0,
+            across: 1.0,
+            stiffness: 1e5,
+            damping: 0.0,
+            viscous: 0.0,
+        }
     }
-}
-
-/// A parameter out of its range.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FrictionError {
-    /// The parameter's name.
-    pub parameter: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// What it must be.
-    pub must_be: &'static str,
-}
-
-impl std::fmt::Display for FrictionError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "friction parameter {} = {} must be {}", self.parameter, self.value, self.must_be)
-    }
-}
-
-impl std::error::Error for FrictionError {}
-
-/// What one evaluation needs.
-#[derive(Clone, Copy, Debug)]
-pub struct Trial {
-    /// Deflection at the start, carried into the present tangent plane, m.
-    pub s: Vector3<f64>,
-    /// Deflection if nothing slipped: `s` plus the tangential displacement of B's point relative to A's, m.
-    pub s_trial: Vector3<f64>,
-    /// Slip velocity of B relative to A, for the level and the viscous term, m/s.
-    pub slip: Vector3<f64>,
-    /// Time between the two deflections, s; positive.
-    pub elapsed: f64,
-    /// Normal force, N; nothing is transmitted where it is not positive.
-    pub normal_force: f64,
-}
-
-/// What the brush answers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Brush {
-    /// Force on B, N.
-    pub force: Vector3<f64>,
-    /// What becomes of the deflection, m; zero without normal force.
-    pub s: Vector3<f64>,
-    /// Whether it sticks.
-    pub sticks: bool,
-    /// −∂f/∂s⁺ is `tangent · (1 − d dᵀ)` within the plane, with `direction` = d (zero in sticking), N/m.
-    pub tangent: f64,
-    /// Direction in which the force is at its bound; zero in sticking.
-    pub direction: Vector3<f64>,
 }
 
 impl Bristle {
     /// Checks every parameter's range.
     pub fn check(&self) -> Result<(), FrictionError> {
-        let all = [
+        check_not_negative(&[
             ("mu_static", self.mu_static),
             ("mu_kinetic", self.mu_kinetic),
+            ("stribeck_speed", self.stribeck_speed),
+            ("dwell_time", self.dwell_time),
+            ("across", self.across),
             ("damping", self.damping),
             ("viscous", self.viscous),
-        ];
-        for (parameter, value) in all {
-            if !(value.is_finite() && value >= 0.0) {
-                return Err(FrictionError { parameter, value, must_be: "finite and not negative" });
-            }
-        }
-        for (parameter, value) in [("stiffness", self.stiffness), ("stribeck_speed", self.stribeck_speed)] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(FrictionError { parameter, value, must_be: "finite and positive" });
-            }
-        }
-        Ok(())
+        ])?;
+        check_positive(&[("stiffness", self.stiffness)])
     }
 
-    /// Friction level at a slip speed, m/s.
+    /// Its levels.
     #[inline]
-    pub fn calc_level(&self, speed: f64) -> f64 {
-        if self.mu_static == self.mu_kinetic {
-            return self.mu_static;
+    pub fn levels(&self) -> Levels {
+        Levels {
+            rested: self.mu_static,
+            kinetic: self.mu_kinetic,
+            stribeck_speed: self.stribeck_speed,
+            dwell_time: self.dwell_time,
         }
-        let x = speed / self.stribeck_speed;
-        self.mu_kinetic + (self.mu_static - self.mu_kinetic) * (-x * x).exp()
     }
 
-    /// Largest deflection that a normal force (N) holds at a slip speed (m/s), m.
+    /// Largest deflection along the grain that a normal force (N) holds at a rest, m.
     #[inline]
-    pub fn calc_reach(&self, normal_force: f64, speed: f64) -> f64 {
-        self.calc_level(speed) * normal_force.max(0.0) / self.stiffness
+    pub fn calc_reach(&self, normal_force: f64, rest: f64) -> f64 {
+        self.levels().at(rest) * normal_force.max(0.0) / self.stiffness
     }
 
     /// Energy stored in a deflection, J.
@@ -127,102 +89,117 @@ impl Bristle {
         0.5 * self.stiffness * s.norm_squared()
     }
 
-    /// The law: force, new deflection, and derivative.
+    #[inline]
+    fn ellipse(&self, level: f64, normal_force: f64, grain: &Vector3<f64>) -> Ellipse {
+        let along = level * normal_force / self.stiffness;
+        Ellipse { along, across: along * self.across, grain: *grain }
+    }
+
+    /// The law: force, new deflection and rest, and derivatives.
     #[inline]
     pub fn eval(&self, trial: &Trial) -> Brush {
+        let levels = self.levels();
         if trial.normal_force <= 0.0 {
-            return Brush {
-                force: Vector3::zeros(),
-                s: Vector3::zeros(),
-                sticks: false,
-                tangent: 0.0,
-                direction: Vector3::zeros(),
-            };
+            return Brush { rest: levels.initial_rest(), ..Brush::default() };
         }
-        let bound = self.calc_level(trial.slip.norm()) * trial.normal_force;
-        let s_max = bound / self.stiffness;
-        let length = trial.s_trial.norm();
-        let sticks = length <= s_max;
-        let (s, shrink) =
-            if sticks { (trial.s_trial, 1.0) } else { (trial.s_trial * (s_max / length), s_max / length) };
-        let mut direction = if sticks { Vector3::zeros() } else { trial.s_trial / length };
-        let mut tangent = (self.stiffness + self.damping / trial.elapsed) * shrink;
+        let speed = if levels.is_constant() { 0.0 } else { trial.slip.norm() };
+        let mut rest = levels.calc_rest(trial.rest, speed, trial.elapsed);
+        let mut bound = self.ellipse(levels.at(rest), trial.normal_force, &trial.grain);
+        let mut held = bound.nearest(&trial.s_trial);
+        if !levels.is_constant() {
+            rest = levels.settle(rest, held.inside, trial.elapsed);
+            if !held.inside && levels.stribeck_speed == 0.0 {
+                bound = self.ellipse(levels.kinetic, trial.normal_force, &trial.grain);
+                held = bound.nearest(&trial.s_trial);
+            }
+        }
         // The damper sees what was left within the bound of now: the length that a falling bound takes away slips at the
         // tip. Counted as a rate of the bristle, it would push along the slip and give energy.
-        let length_before = trial.s.norm();
-        let before = if length_before > s_max { trial.s * (s_max / length_before) } else { trial.s };
-        let mut force = -(self.stiffness * s + self.damping / trial.elapsed * (s - before));
-        let size = force.norm();
-        if size > bound && self.damping > 0.0 {
-            direction = force / size;
-            tangent *= bound / size;
-            force = direction * bound;
+        let before = if trial.s == Vector3::zeros() { trial.s } else { bound.nearest(&trial.s).s };
+        let rate = self.damping / trial.elapsed;
+        let mut force = -(self.stiffness * held.s + rate * (held.s - before));
+        let mut slope = Slope { across: (self.stiffness + rate) * held.shrink, along: 0.0, direction: held.normal };
+        if held.inside {
+            slope.along = slope.across;
         }
-        Brush { force: force - self.viscous * trial.slip, s, sticks, tangent, direction }
+        if self.damping > 0.0 {
+            let allowed = bound.scaled(self.stiffness).nearest(&force);
+            if !allowed.inside {
+                slope = Slope { across: slope.across * allowed.shrink, along: 0.0, direction: allowed.normal };
+                force = allowed.s;
+            }
+        }
+        let by_slip = self.calc_slip_slope(trial, speed, held.inside);
+        Brush {
+            force: force - self.viscous * trial.slip,
+            s: held.s,
+            rest,
+            sticks: held.inside,
+            by_deflection: slope,
+            by_slip,
+        }
     }
-}
 
-/// What the law says in continuous time, for integrators that take rates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BrushRate {
-    /// Force on B, N.
-    pub force: Vector3<f64>,
-    /// The deflection within what the normal force holds, m.
-    pub s: Vector3<f64>,
-    /// Its rate, m/s: the slip velocity, without the part that would lengthen a bristle on its bound.
-    pub s_rate: Vector3<f64>,
-    /// Whether it sticks.
-    pub sticks: bool,
+    /// −∂f/∂u: the viscous term, and in sliding the level that follows the speed.
+    #[inline]
+    fn calc_slip_slope(&self, trial: &Trial, speed: f64, sticks: bool) -> Slope {
+        if sticks || self.mu_static == self.mu_kinetic || speed == 0.0 {
+            return Slope::even(self.viscous);
+        }
+        let direction = trial.slip / speed;
+        let fall = self.levels().calc_slope(speed) * trial.normal_force;
+        Slope { across: self.viscous, along: self.viscous + fall, direction }
+    }
+
+    /// The law in continuous time; `trial.s_trial` and `trial.elapsed` do not matter, rest stays what it was.
+    pub fn eval_rate(&self, trial: &Trial) -> BrushRate {
+        if trial.normal_force <= 0.0 {
+            return BrushRate::none();
+        }
+        let levels = self.levels();
+        let speed = if levels.is_constant() { 0.0 } else { trial.slip.norm() };
+        let lags = levels.dwell_time > 0.0;
+        let rest = if lags { trial.rest } else { levels.calc_rest(trial.rest, speed, 0.0) };
+        let bound = self.ellipse(levels.at(rest), trial.normal_force, &trial.grain);
+        let s = bound.nearest(&trial.s).s;
+        let edge = bound.scaled(ON_BOUND).nearest(&s);
+        let outward = edge.normal.dot(&trial.slip);
+        let slides = !edge.inside && outward > 0.0;
+        let s_rate = if slides { trial.slip - edge.normal * outward } else { trial.slip };
+        let mut force = -(self.stiffness * s + self.damping * s_rate);
+        if self.damping > 0.0 {
+            force = bound.scaled(self.stiffness).nearest(&force).s;
+        }
+        BrushRate { force: force - self.viscous * trial.slip, s, s_rate, sticks: !slides }
+    }
 }
 
 /// How near the bound counts as on it: with a strict comparison round-off would choose the branch.
 const ON_BOUND: f64 = 1.0 - 1e-9;
 
-impl Bristle {
-    /// The law in continuous time at the deflection `s` (m), slip velocity (m/s) and normal force (N).
-    pub fn eval_rate(&self, s: &Vector3<f64>, slip: &Vector3<f64>, normal_force: f64) -> BrushRate {
-        if normal_force <= 0.0 {
-            let zero = Vector3::zeros();
-            return BrushRate { force: zero, s: zero, s_rate: zero, sticks: false };
-        }
-        let bound = self.calc_level(slip.norm()) * normal_force;
-        let (s_max, length) = (bound / self.stiffness, s.norm());
-        let s = if length > s_max { s * (s_max / length) } else { *s };
-        let outward = s.dot(slip);
-        let slides = length >= s_max * ON_BOUND && outward > 0.0;
-        let s_rate = if slides { slip - s * (outward / s.norm_squared()) } else { *slip };
-        let mut force = -(self.stiffness * s + self.damping * s_rate);
-        let size = force.norm();
-        if size > bound {
-            force *= bound / size;
-        }
-        BrushRate { force: force - self.viscous * slip, s, s_rate, sticks: !slides }
-    }
-}
-
-impl Brush {
-    /// −∂f/∂s⁺ as a matrix, N/m, in the plane normal to `n`.
-    #[inline]
-    pub fn calc_tangent_matrix(&self, n: &Vector3<f64>) -> Matrix3<f64> {
-        self.tangent * (Matrix3::identity() - n * n.transpose() - self.direction * self.direction.transpose())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const LAW: Bristle =
-        Bristle { mu_static: 0.5, mu_kinetic: 0.3, stribeck_speed: 0.01, stiffness: 1e4, damping: 5.0, viscous: 2.0 };
+    const LAW: Bristle = Bristle {
+        mu_static: 0.5,
+        mu_kinetic: 0.3,
+        stribeck_speed: 0.01,
+        dwell_time: 0.0,
+        across: 1.0,
+        stiffness: 1e4,
+        damping: 5.0,
+        viscous: 2.0,
+    };
 
     fn trial(s: Vector3<f64>, ds: Vector3<f64>) -> Trial {
-        Trial { s, s_trial: s + ds, slip: ds / 1e-3, elapsed: 1e-3, normal_force: 20.0 }
+        Trial { s, s_trial: s + ds, slip: ds / 1e-3, elapsed: 1e-3, normal_force: 20.0, ..Trial::default() }
     }
 
     #[test]
     fn sliding_force_is_the_level_against_the_motion() {
         let law = Bristle { damping: 0.0, viscous: 0.0, ..LAW };
-        let s = Vector3::new(law.calc_reach(20.0, 1.0), 0.0, 0.0);
+        let s = Vector3::new(law.calc_reach(20.0, 0.0), 0.0, 0.0);
         let brush = law.eval(&trial(s, Vector3::new(1e-3, 0.0, 0.0)));
         assert!(!brush.sticks);
         // Round-off of a product.
@@ -251,22 +228,81 @@ mod tests {
         assert_eq!((brush.force, brush.s), (Vector3::zeros(), Vector3::zeros()));
     }
 
+    /// In stick and in slip, with and without damper, isotropic and not: by central differences.
     #[test]
-    fn derivative_is_exact_in_stick_and_in_slip() {
-        let law = Bristle { mu_kinetic: 0.5, damping: 0.0, viscous: 0.0, ..LAW };
-        for ds in [Vector3::new(1e-5, 2e-5, 0.0), Vector3::new(2e-3, 1e-3, 0.0)] {
-            let at = trial(Vector3::new(1e-4, -2e-4, 0.0), ds);
-            let matrix = law.eval(&at).calc_tangent_matrix(&Vector3::z());
-            for k in 0..2 {
-                let e = Vector3::ith(k, 1e-9);
-                let (up, down) = (
-                    law.eval(&Trial { s_trial: at.s_trial + e, ..at }).force,
-                    law.eval(&Trial { s_trial: at.s_trial - e, ..at }).force,
-                );
-                // Central difference over 2 nm at forces of a few N: round-off 1e-15/1e-9, relative to k = 1e4 N/m.
-                assert!(((down - up) / 2e-9 - matrix.column(k)).norm() < 1e-2);
+    fn derivatives_are_exact_in_stick_and_in_slip() {
+        for (damping, across) in [(0.0, 1.0), (5.0, 1.0), (0.0, 0.4), (5.0, 0.4)] {
+            let law = Bristle { damping, across, ..LAW };
+            for ds in [Vector3::new(1e-5, 2e-5, 0.0), Vector3::new(2e-3, 1e-3, 0.0)] {
+                let s = Vector3::new(1e-4, -0.5e-4, 0.0);
+                let at = Trial { grain: Vector3::x(), ..trial(s, ds) };
+                let brush = law.eval(&at);
+                let overshoots = !brush.sticks && damping > 0.0;
+                for k in 0..2 {
+                    let e = Vector3::ith(k, 1e-9);
+                    let by_s = law.eval(&Trial { s_trial: at.s_trial - e, ..at }).force
+                        - law.eval(&Trial { s_trial: at.s_trial + e, ..at }).force;
+                    let matrix = brush.by_deflection.calc_matrix(&Vector3::z());
+                    // Differences over 2 nm at forces of a few N: round-off 1e-15/1e-9, against k = 1e4 N/m. Where the damper
+                    // overshoots, two nearest points follow each other and the product of their slopes is not symmetric.
+                    let tolerance = if overshoots { 0.2 * law.stiffness } else { 1e-2 };
+                    assert!((by_s / 2e-9 - matrix.column(k)).norm() < tolerance, "{by_s} {matrix}");
+                    let e = Vector3::ith(k, 1e-6);
+                    let by_u = law.eval(&Trial { slip: at.slip - e, ..at }).force
+                        - law.eval(&Trial { slip: at.slip + e, ..at }).force;
+                    let claimed = brush.by_slip.calc_matrix(&Vector3::z());
+                    let is_radial = across == 1.0 && ds.norm() < 1e-4;
+                    if is_radial {
+                        assert!((by_u / 2e-6 - claimed.column(k)).norm() < 1e-5 * claimed.norm());
+                    }
+                }
             }
         }
+    }
+
+    /// Dragged steadily, the bristle lies along the slip, and the level's fall with speed is along it too.
+    #[test]
+    fn the_falling_level_is_in_the_derivative_by_slip() {
+        let law = Bristle { damping: 0.0, ..LAW };
+        let u = Vector3::new(8e-3, 0.0, 0.0);
+        let at = Trial {
+            s: Vector3::x() * 1e-3,
+            s_trial: Vector3::x() * 2e-3,
+            slip: u,
+            normal_force: 20.0,
+            ..Trial::default()
+        };
+        let e = Vector3::x() * 1e-7;
+        let slope =
+            (law.eval(&Trial { slip: u - e, ..at }).force - law.eval(&Trial { slip: u + e, ..at }).force).x / 2e-7;
+        let claimed = law.eval(&at).by_slip.along;
+        assert!(claimed < 0.0 && (slope - claimed).abs() < 1e-6 * slope.abs(), "{slope} {claimed}");
+    }
+
+    #[test]
+    fn a_drop_of_level_comes_at_breakaway_and_goes_at_rest() {
+        let law = Bristle { stribeck_speed: 0.0, damping: 0.0, viscous: 0.0, ..LAW };
+        let just_below = law.eval(&trial(Vector3::zeros(), Vector3::x() * 0.99e-3));
+        assert!(just_below.sticks && (just_below.force.x + 9.9).abs() < 1e-12);
+        let above = law.eval(&trial(just_below.s, Vector3::x() * 0.02e-3));
+        assert!(!above.sticks && (above.force.x + 6.0).abs() < 1e-12 && above.rest == 0.0);
+        let on = law.eval(&Trial { rest: above.rest, ..trial(above.s, Vector3::x() * 1e-6) });
+        assert!(!on.sticks && (on.force.x + 6.0).abs() < 1e-12, "it slides on at the kinetic level");
+        let back = law.eval(&Trial { rest: on.rest, ..trial(on.s, Vector3::x() * -1e-6) });
+        assert!(back.sticks && back.rest == 1.0);
+        let again = law.eval(&Trial { rest: back.rest, ..trial(back.s, Vector3::x() * 0.3e-3) });
+        assert!(again.sticks && again.force.x < -8.9, "rested, it holds the static level again");
+    }
+
+    #[test]
+    fn the_static_level_returns_with_the_dwell_time() {
+        let law = Bristle { stribeck_speed: 0.0, dwell_time: 2.0, ..LAW };
+        let mut rest = law.levels().initial_rest();
+        for _ in 0..3000 {
+            rest = law.eval(&Trial { rest, ..trial(Vector3::zeros(), Vector3::zeros()) }).rest;
+        }
+        // 3 s of 2 s: 1 − exp(−1.5), to the round-off of 3,000 products.
+        assert!((rest - (1.0 - (-1.5_f64).exp())).abs() < 1e-12);
     }
 
     #[test]

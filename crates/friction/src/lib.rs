@@ -9,8 +9,12 @@
 //!   s' = s_max s⁺/|s⁺| elsewhere                                                   slides: dragged along
 //!   f  = −(k s' + c (s' − s)/τ), shortened to μ fₙ, − b u                           on B, N
 //!
-//! with τ the time between s and s', and a level μ that may fall with the slip speed u (Stribeck):
-//!   μ(u) = μ_k + (μ_s − μ_k) exp(−(u/v_s)²).
+//! with τ the time between s and s'. The level μ may fall with the slip speed (Stribeck) or at breakaway, return with the time
+//! at rest ([`Levels`]), and differ across a grain (an ellipse in place of the circle |s| ≤ s_max; s' is then its nearest point).
+//! A falling normal force shrinks the bound, and the bristle with it; what it stored beyond is lost, never given back.
+//! As bodies and plane turn, [`carry`] and [`mean_of`] bring s into the new plane at its length. [`Pivot`] is the lumped
+//! resistance of a single point to spinning and rolling. [`RegularisedCoulomb`] and [`LuGre`] (with Dahl and elasto-plastic)
+//! answer the same questions through the same interface, [`Friction`], for comparison.
 //!
 //! Sign: `f` acts on B, `s` and `u` are B's motion relative to A. All vectors lie in the tangent plane, in any axes.
 //! The law is pure: it returns a force *and* what becomes of the bristle; only an accepted step commits it.
@@ -24,7 +28,7 @@
 //! let (mass, h, pull, mut x, mut v, mut s) = (1.0, 1e-4, 1.5, 0.0, 0.0, Vector3::zeros());
 //! for _ in 0..10_000 {
 //!     let slip = Vector3::new(v, 0.0, 0.0);
-//!     let brush = law.eval(&Trial { s, s_trial: s + h * slip, slip, elapsed: h, normal_force: 9.81 * mass });
+//!     let brush = law.eval(&Trial { s, s_trial: s + h * slip, slip, elapsed: h, normal_force: 9.81 * mass, ..Trial::default() });
 //!     v += h * (pull + brush.force.x) / mass;
 //!     (x, s) = (x + h * v, brush.s);
 //! }
@@ -32,5 +36,20 @@
 //! ```
 
 mod bristle;
+mod coulomb;
+mod ellipse;
+mod law;
+mod levels;
+mod lugre;
+mod pivot;
+mod transport;
+mod trial;
 
-pub use bristle::{Bristle, Brush, BrushRate, FrictionError, Trial};
+pub use bristle::Bristle;
+pub use coulomb::RegularisedCoulomb;
+pub use law::Friction;
+pub use levels::Levels;
+pub use lugre::LuGre;
+pub use pivot::{Pivot, PivotMoment, Turn};
+pub use transport::{carry, mean_of};
+pub use trial::{Brush, BrushRate, FrictionError, Slope, Trial};

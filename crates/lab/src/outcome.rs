@@ -67,6 +67,31 @@ pub enum Allowed {
 }
 
 impl Figure {
+    /// A figure that must be within a fraction of what theory says.
+    pub fn relative(name: impl Into<String>, measured: f64, expected: f64, unit: &'static str, fraction: f64) -> Self {
+        Self { name: name.into(), measured, expected, unit, allowed: Allowed::Relative(fraction) }
+    }
+
+    /// A figure that must be within an amount of what theory says.
+    pub fn absolute(name: impl Into<String>, measured: f64, expected: f64, unit: &'static str, amount: f64) -> Self {
+        Self { name: name.into(), measured, expected, unit, allowed: Allowed::Absolute(amount) }
+    }
+
+    /// A figure whose size must not exceed a bound.
+    pub fn at_most(name: impl Into<String>, measured: f64, bound: f64, unit: &'static str) -> Self {
+        Self { name: name.into(), measured, expected: 0.0, unit, allowed: Allowed::AtMost(bound) }
+    }
+
+    /// A figure whose size must reach a bound.
+    pub fn at_least(name: impl Into<String>, measured: f64, bound: f64, unit: &'static str) -> Self {
+        Self { name: name.into(), measured, expected: f64::NAN, unit, allowed: Allowed::AtLeast(bound) }
+    }
+
+    /// A figure that is only shown, beside what theory says (NaN: nothing).
+    pub fn shown(name: impl Into<String>, measured: f64, expected: f64, unit: &'static str) -> Self {
+        Self { name: name.into(), measured, expected, unit, allowed: Allowed::Shown }
+    }
+
     /// Whether the figure is what it should be; NaN never is, unless it is only shown.
     pub fn holds(&self) -> bool {
         let off = (self.measured - self.expected).abs();
@@ -77,6 +102,13 @@ impl Figure {
             Allowed::AtLeast(x) => self.measured.abs() >= x,
             Allowed::Shown => true,
         }
+    }
+}
+
+impl Outcome {
+    /// Whether all figures hold.
+    pub fn holds(&self) -> bool {
+        self.figures.iter().all(Figure::holds)
     }
 }
 
@@ -91,6 +123,8 @@ pub struct Chart {
     pub up: String,
     /// Whether the axes (across, up) are logarithmic.
     pub logarithmic: (bool, bool),
+    /// Whether one unit is as long across as up: paths and places.
+    pub equal_scales: bool,
     /// The curves.
     pub curves: Vec<Curve>,
 }
@@ -104,6 +138,41 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
     /// Drawn as theory (dashed) rather than as a measurement.
     pub is_theory: bool,
+    /// Drawn as marks rather than as a line: single measurements.
+    pub is_marks: bool,
+}
+
+impl Chart {
+    /// A chart without curves; `across` and `up` with their units: "time, s".
+    pub fn new(title: impl Into<String>, across: impl Into<String>, up: impl Into<String>) -> Self {
+        Self { title: title.into(), across: across.into(), up: up.into(), ..Self::default() }
+    }
+
+    /// The same with logarithmic axes.
+    pub fn logarithmic(self, across: bool, up: bool) -> Self {
+        Self { logarithmic: (across, up), ..self }
+    }
+
+    /// The same with one measured line more.
+    pub fn line(self, name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        self.curve(Curve { name: name.into(), points, ..Curve::default() })
+    }
+
+    /// The same with one line of theory more.
+    pub fn theory(self, name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        self.curve(Curve { name: name.into(), points, is_theory: true, ..Curve::default() })
+    }
+
+    /// The same with single measurements more.
+    pub fn marks(self, name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        self.curve(Curve { name: name.into(), points, is_marks: true, ..Curve::default() })
+    }
+
+    /// The same with one curve more.
+    pub fn curve(mut self, curve: Curve) -> Self {
+        self.curves.push(curve);
+        self
+    }
 }
 
 /// Why an experiment could not be run.

@@ -293,7 +293,7 @@ fn write_contact_samples(world: &World, contacts: &mut Vec<ContactSample>) {
         let normal_force_w: Vec3 = touch.force_w.dot(&touch.normal_w) * touch.normal_w;
         let friction_force_w = touch.force_w - normal_force_w;
         let law = world.model().laws[touch.pair].friction;
-        let bound = law.map_or(0.0, |f| f.mu_static * touch.normal_force);
+        let bound = law.map_or(0.0, |f| f.highest_level() * touch.normal_force);
         contacts.push(ContactSample {
             pair: touch.pair,
             point_w: touch.point_w,

@@ -131,6 +131,6 @@ impl Energy {
 
 fn calc_elastic(world: &World, pair: usize, gap: f64, deflection: f64) -> f64 {
     let law = &world.model().laws[pair];
-    let bristle = law.friction.map_or(0.0, |f| 0.5 * f.stiffness * deflection * deflection);
+    let bristle = law.friction.map_or(0.0, |f| 0.5 * f.spring().0 * deflection * deflection);
     law.normal.calc_stored_energy(gap) + bristle
 }

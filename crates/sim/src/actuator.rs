@@ -151,7 +151,14 @@ impl Coordinate {
         let Some(law) = &self.dry else { return 0.0 };
         let start = Vec3::new(s, 0.0, 0.0);
         let along = Vec3::new(moved, 0.0, 0.0);
-        let trial = Trial { s: start, s_trial: start + along, slip: along / h, elapsed: h, normal_force: 1.0 };
+        let trial = Trial {
+            s: start,
+            s_trial: start + along,
+            slip: along / h,
+            elapsed: h,
+            normal_force: 1.0,
+            ..Trial::default()
+        };
         law.eval(&trial).s.x
     }
 
@@ -179,9 +186,10 @@ impl Coordinate {
             let s = Vec3::new(at.dry_start, 0.0, 0.0);
             let slip = Vec3::new(v, 0.0, 0.0);
             let s_trial = s + Vec3::new(at.moved_base + at.beta * v_new, 0.0, 0.0);
-            let brush = law.eval(&Trial { s, s_trial, slip, elapsed: at.elapsed, normal_force: 1.0 });
+            let brush =
+                law.eval(&Trial { s, s_trial, slip, elapsed: at.elapsed, normal_force: 1.0, ..Trial::default() });
             out.effort += brush.force.x;
-            out.slope += if brush.sticks { brush.tangent * at.beta } else { 0.0 };
+            out.slope += if brush.sticks { brush.by_deflection.across * at.beta } else { 0.0 };
         }
         for &index in &self.actuators {
             let (effort, slope) = drive(&actuators[index].kind, &commands[index], at, q, v);

@@ -17,7 +17,7 @@
 use crate::model::{Model, PairLaw};
 use crate::state::{ContactMemory, State};
 use crate::workspace::Workspace;
-use friction::Trial;
+use friction::{Brush, Friction, Trial, carry, mean_of};
 use spatial::{Frame, Mat3, Vec3};
 
 /// One touching point.
@@ -31,13 +31,18 @@ pub(crate) struct Touch {
     pub point: Vec3,
     pub local_a: Vec3,
     pub local_b: Vec3,
-    /// B's axes in W at the place of detection.
+    /// A's and B's axes in W at the place of detection.
+    pub rot_a: Mat3,
     pub rot_b: Mat3,
     /// From A to B.
     pub normal: Vec3,
     pub gap: f64,
     /// Deflection at the start, carried into the present plane.
     pub s: Vec3,
+    /// How rested the point was at the start.
+    pub rest: f64,
+    /// Direction along which the friction levels are meant; zero where there is none.
+    pub grain: Vec3,
     /// Velocity of B's point relative to A's at the start.
     pub u: Vec3,
     /// What the bodies' turning adds to it over the step, without any gain: h (ω_B − ω_A) × ẋ_C. Gains are spatial, those
@@ -64,8 +69,9 @@ pub(crate) struct Outcome {
     pub law: Vec3,
     /// Normal part of it, N.
     pub normal_force: f64,
-    /// Deflection and regime by the law.
+    /// Deflection, rest and regime by the law.
     pub s: Vec3,
+    pub rest: f64,
     pub sticks: bool,
     /// Passes of this step in which the slip force turned by more than 90°.
     pub turns: u8,
@@ -105,21 +111,17 @@ impl Touch {
                 slip,
                 elapsed: at.elapsed,
                 normal_force: normal.force + law.normal.adhesion,
+                rest: self.rest,
+                grain: self.grain,
             });
             out.law += brush.force;
-            out.s = brush.s;
-            out.sticks = brush.sticks;
-            out.g += h * at.theta * friction.viscous * plane_of(&n);
+            (out.s, out.rest, out.sticks) = (brush.s, brush.rest, brush.sticks);
             out.turns = self.out.turns + u8::from(self.has_turned(&brush));
-            if out.turns == 0 || brush.direction == Vec3::zeros() {
-                out.g += h * at.beta * brush.calc_tangent_matrix(&n);
-            } else if out.turns > self.out.turns && out.turns == 1 {
-                let spring = friction.stiffness + friction.damping / at.elapsed;
-                out.g += h * at.beta * spring * plane_of(&n);
-                let unbounded = friction.damping / at.elapsed * self.s - spring * s_trial;
-                excess = unbounded - friction.viscous * slip - brush.force;
-            } else {
-                out.g += h * at.beta * brush.tangent * plane_of(&n);
+            out.g += h * self.calc_friction_slope(&brush, friction, &out);
+            if out.turns > self.out.turns && out.turns == 1 {
+                let (stiffness, damping) = friction.spring();
+                let spring = stiffness + damping / at.elapsed;
+                excess = damping / at.elapsed * self.s - spring * s_trial - friction.viscous() * slip - brush.force;
             }
         }
         out.line = out.law + excess + out.g * (u_new - self.u - self.carried) / h;
@@ -127,10 +129,33 @@ impl Touch {
         out
     }
 
+    /// −∂f/∂u' of the friction force, or what stands in for it where the slip force turned (see [`Self::eval`]).
+    ///
+    /// A level that falls with speed counts as constant: its slope would take definiteness from the matrix, and the next
+    /// pass sees the new level.
+    fn calc_friction_slope(&self, brush: &Brush, friction: &Friction, out: &Outcome) -> Mat3 {
+        let (n, at, slip, mut by_s) = (&self.normal, self.place, brush.by_slip, brush.by_deflection);
+        let is_free = by_s.direction == Vec3::zeros() && slip.direction == Vec3::zeros();
+        let mut by_slip = friction::Slope { along: slip.along.max(0.0), ..slip };
+        if out.turns > self.out.turns && out.turns == 1 {
+            let (stiffness, damping) = friction.spring();
+            by_s = friction::Slope::even(stiffness + damping / at.elapsed);
+        } else if out.turns > 0 && !is_free {
+            by_s = friction::Slope::even(by_s.across);
+            by_slip = friction::Slope::even(slip.across);
+        }
+        let mut slope = at.beta * by_s.calc_matrix(n);
+        if by_slip.across != 0.0 || by_slip.along != 0.0 {
+            slope += at.theta * by_slip.calc_matrix(n);
+        }
+        slope
+    }
+
     /// Whether a force on its bound has turned by more than 90° since the last pass.
-    fn has_turned(&self, brush: &friction::Brush) -> bool {
+    fn has_turned(&self, brush: &Brush) -> bool {
         let before = self.out.law - self.normal * self.normal.dot(&self.out.law);
-        brush.direction != Vec3::zeros() && brush.force.dot(&before) < 0.0
+        let is_free = brush.by_deflection.direction == Vec3::zeros() && brush.by_slip.direction == Vec3::zeros();
+        !is_free && brush.force.dot(&before) < 0.0
     }
 
     /// Lever arms do not matter here: the relative velocity of the two material points.
@@ -144,11 +169,6 @@ pub(crate) fn calc_carried(model: &Model, ws: &Workspace, touch: &Touch) -> Vec3
     let spin = |body: usize| model.owners.get(body).map_or(Vec3::zeros(), |&(v, b)| ws.kin[v].vel[b].ang);
     let at = |body: usize| ws.vel_at(model, body, &touch.point);
     (spin(touch.body_b) - spin(touch.body_a)).cross(&(0.5 * (at(touch.body_a) + at(touch.body_b))))
-}
-
-/// The projector on the plane normal to `n`.
-fn plane_of(n: &Vec3) -> Mat3 {
-    Mat3::identity() - n * n.transpose()
 }
 
 /// Speculative distance: a point counts if it may touch within the step. It moves at most this much.
@@ -189,10 +209,13 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
             point,
             local_a: ws.frames[body_a].inverse_point(&point),
             local_b: ws.frames[body_b].inverse_point(&point),
+            rot_a: ws.frames[body_a].rot,
             rot_b: ws.frames[body_b].rot,
             normal: contact.normal_w,
             gap: contact.gap,
             s: Vec3::zeros(),
+            rest: 0.0,
+            grain: Vec3::zeros(),
             u,
             carried: Vec3::zeros(),
             place: Place::default(),
@@ -201,19 +224,24 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
     }
     for i in 0..ws.touches.len() {
         ws.touches[i].carried = calc_carried(model, ws, &ws.touches[i]) * h;
+        let law = &model.laws[ws.touches[i].pair as usize];
+        ws.touches[i].rest = law.friction.map_or(1.0, |f| f.initial_rest());
+        if let Some(grain) = &law.grain {
+            ws.touches[i].grain = grain.calc_direction(&ws.touches[i]);
+        }
     }
-    remember(&state.bristles, &mut ws.touches, &ws.frames);
+    remember(&state.bristles, &mut ws.touches, &Turned { from: &ws.frames_start, to: &ws.frames });
 }
 
 /// Distance (m) within which a point inherits the bristle of a vanished neighbour of the same pair.
 const NEIGHBOUR: f64 = 2e-3;
 
 /// Hands every touch the bristle of its identity; where features say nothing, that of the nearest lost neighbour.
-fn remember(memories: &[ContactMemory], touches: &mut [Touch], frames: &[Frame]) {
+fn remember(memories: &[ContactMemory], touches: &mut [Touch], turned: &Turned<'_>) {
     let mut known = 0;
     for touch in touches.iter_mut() {
         if let Some(at) = find_memory(memories, touch.pair, touch.feature) {
-            touch.s = carry(&memories[at].s_b, &frames[touch.body_b], &touch.normal);
+            touch.recall(&memories[at], turned);
             known += 1;
         }
     }
@@ -233,7 +261,7 @@ fn remember(memories: &[ContactMemory], touches: &mut [Touch], frames: &[Frame])
         let distance = |t: &Touch| (t.local_b - memory.point_b).norm();
         let nearest = touches.iter_mut().filter(|t| is_orphan(t)).min_by(|a, b| distance(a).total_cmp(&distance(b)));
         if let Some(touch) = nearest.filter(|t| distance(t) < NEIGHBOUR) {
-            touch.s = carry(&memory.s_b, &frames[touch.body_b], &touch.normal);
+            touch.recall(memory, turned);
         }
     }
 }
@@ -243,12 +271,52 @@ pub(crate) fn find_memory(memories: &[ContactMemory], pair: u32, feature: u64) -
     memories.binary_search_by(|m| (m.pair, m.feature).cmp(&(pair, feature))).ok()
 }
 
-/// A deflection kept in B's axes, in the present tangent plane: turned with B, laid into the plane, length kept.
-fn carry(s_b: &Vec3, frame_wb: &Frame, normal: &Vec3) -> Vec3 {
-    let s = frame_wb.rot * s_b;
-    let laid = s - normal * normal.dot(&s);
-    let (before, after) = (s.norm_squared(), laid.norm_squared());
-    if after > 0.0 { laid * (before / after).sqrt() } else { Vec3::zeros() }
+/// How the bodies turned between two moments.
+pub(crate) struct Turned<'a> {
+    pub from: &'a [Frame],
+    pub to: &'a [Frame],
+}
+
+impl Turned<'_> {
+    /// A vector in W axes, as fixed in a body.
+    #[inline]
+    fn with(&self, body: usize, v: &Vec3) -> Vec3 {
+        let (from, to) = (&self.from[body].rot, &self.to[body].rot);
+        if from == to { *v } else { to * from.tr_mul(v) }
+    }
+
+    /// The mean of what a unit vector becomes with both bodies.
+    #[inline]
+    pub fn normal(&self, (a, b): (usize, usize), n: &Vec3) -> Vec3 {
+        mean_of(&self.with(a, n), &self.with(b, n))
+    }
+
+    /// A deflection of the plane normal to `n`, carried with both bodies into the plane normal to `to`.
+    #[inline]
+    pub fn deflection(&self, (a, b): (usize, usize), s: &Vec3, n: &Vec3, to: &Vec3) -> Vec3 {
+        let one = |body: usize| carry(&self.with(body, s), &self.with(body, n), to);
+        mean_of(&one(a), &one(b))
+    }
+}
+
+impl Touch {
+    fn recall(&mut self, memory: &ContactMemory, turned: &Turned<'_>) {
+        let bodies = (self.body_a, self.body_b);
+        self.s = turned.deflection(bodies, &memory.s_w, &memory.normal_w, &self.normal);
+        self.rest = memory.rest;
+    }
+
+    /// What is kept of the point when the bodies have moved on from the place of detection to frames `a` and `b`: the
+    /// deflection `s` of the plane of detection, and what has slipped since, W axes.
+    fn remembered(&self, s: &Vec3, slipped: &Vec3, (a, b): (&Frame, &Frame)) -> ContactMemory {
+        let with = |v: &Vec3| (a.rot * self.rot_a.tr_mul(v), b.rot * self.rot_b.tr_mul(v));
+        let ((n_a, n_b), (s_a, s_b)) = (with(&self.normal), with(s));
+        let normal_w = mean_of(&n_a, &n_b);
+        let carried = mean_of(&carry(&s_a, &n_a, &normal_w), &carry(&s_b, &n_b, &normal_w));
+        let s_w = carried + slipped - normal_w * normal_w.dot(slipped);
+        let Self { pair, feature, local_b: point_b, .. } = *self;
+        ContactMemory { pair, feature, s_w, normal_w, rest: self.out.rest, point_b }
+    }
 }
 
 /// Keeps the bristles of the accepted step: in stick the deflection follows the displacement of the material points
@@ -261,15 +329,14 @@ pub(crate) fn commit_bristles(model: &Model, state: &mut State, ws: &mut Workspa
         }
         let (b0, b1) = (&ws.frames_start[touch.body_b], &ws.frames[touch.body_b]);
         let (a0, a1) = (&ws.frames_start[touch.body_a], &ws.frames[touch.body_a]);
-        let s_b = if touch.out.sticks {
+        let memory = if touch.out.sticks {
             let now = b1.point(&touch.local_b) - a1.point(&touch.local_a);
             let start = b0.point(&touch.local_b) - a0.point(&touch.local_a);
-            let moved = now - start;
-            touch.rot_b.tr_mul(&touch.s) + b1.rot.tr_mul(&(moved - touch.normal * touch.normal.dot(&moved)))
+            touch.remembered(&touch.s, &(now - start), (a1, b1))
         } else {
-            touch.rot_b.tr_mul(&touch.out.s)
+            touch.remembered(&touch.out.s, &Vec3::zeros(), (a1, b1))
         };
-        ws.memories.push(ContactMemory { pair: touch.pair, feature: touch.feature, s_b, point_b: touch.local_b });
+        ws.memories.push(memory);
     }
     std::mem::swap(&mut state.bristles, &mut ws.memories);
 }

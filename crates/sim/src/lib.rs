@@ -42,7 +42,7 @@ pub use account::{Energy, MomentumAudit};
 pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
 pub use environment::Environment;
 pub use error::{ModelError, StepError};
-pub use model::{Base, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, Vehicle, VehicleSpec};
+pub use model::{Base, Grain, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, Vehicle, VehicleSpec};
 pub use run::{Controller, Flow, NoControl, Observer};
 pub use state::{Account, ContactMemory, State, Work};
 pub use world::{TouchReport, World};

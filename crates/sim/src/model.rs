@@ -7,7 +7,7 @@ use crate::actuator::{Actuator, ActuatorKind, Coordinate};
 use crate::environment::Environment;
 use crate::error::ModelError;
 use contact::{Collider, Normal, Scene};
-use friction::Bristle;
+use friction::Friction;
 use multibody::{JointKind, Tree};
 use spatial::{Pose, Vec3};
 
@@ -68,8 +68,38 @@ pub struct PairLaw {
     /// Along the normal.
     pub normal: Normal,
     /// In the tangent plane; `None` for a frictionless pair.
-    pub friction: Option<Bristle>,
+    pub friction: Option<Friction>,
+    /// Direction along which the friction levels are meant, for a law that differs across it.
+    pub grain: Option<Grain>,
 }
+
+impl PairLaw {
+    /// Laws without a grain.
+    pub fn new(normal: Normal, friction: Option<Friction>) -> Self {
+        Self { normal, friction, grain: None }
+    }
+}
+
+/// A direction of a surface, as brushed or turned: laid into the tangent plane at every point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grain {
+    /// Whether it belongs to B; else to A.
+    pub on_b: bool,
+    /// The direction, axes of the body (of W for the world).
+    pub axis: Vec3,
+}
+
+impl Grain {
+    /// The direction at a point, W axes; zero where it stands upright on the plane.
+    pub(crate) fn calc_direction(&self, touch: &crate::contacts::Touch) -> Vec3 {
+        let axis = if self.on_b { touch.rot_b } else { touch.rot_a } * self.axis;
+        let laid = axis - touch.normal * touch.normal.dot(&axis);
+        laid.try_normalize(UPRIGHT * axis.norm()).unwrap_or_default()
+    }
+}
+
+/// Sine of the angle to the normal below which a grain says nothing.
+const UPRIGHT: f64 = 1e-6;
 
 /// Fixed-step integrators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

@@ -7,12 +7,13 @@
 //! theirs at its end. Sliding bristles turn at |u|/s_max, which wants h < 2 s_max/|u|.
 
 use crate::actuator::CoordinatePoint;
-use crate::contacts::{find_memory, find_touches};
+use crate::contacts::{Touch, Turned, find_memory, find_touches};
 use crate::model::Model;
 use crate::solve;
 use crate::state::{Account, ContactMemory, State};
 use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
 use crate::workspace::Workspace;
+use friction::{Friction, Trial};
 use spatial::{Mat3, Twist, Vec3, Wrench, log_rotation, rotation_rate_of_vector};
 
 /// Scratch of the stages.
@@ -32,7 +33,7 @@ struct Rates {
     xi: Vec<f64>,
     v: Vec<f64>,
     momentum: Vec<Wrench>,
-    /// Per bristle slot, in B's axes.
+    /// Per bristle slot, in the plane and the axes of the step's start.
     s: Vec<Vec3>,
     account: Account,
 }
@@ -103,6 +104,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     ws.rk = rk;
     ws.update_positions(model, state);
     finish(model, state, ws);
+    carry_to_the_end(model, state, ws);
 }
 
 /// Every touching point gets a slot, in the order of touches; its deflection is cut to what the normal force holds.
@@ -111,12 +113,33 @@ fn open_slots(model: &Model, ws: &Workspace, slots: &mut Vec<ContactMemory>) {
     for touch in &ws.touches {
         let law = &model.laws[touch.pair as usize];
         let Some(friction) = &law.friction else { continue };
-        let n = touch.normal;
-        let normal = law.normal.eval(touch.gap, n.dot(&touch.u));
-        let compression = normal.force + law.normal.adhesion;
-        let slip = touch.u - n * n.dot(&touch.u);
-        let s_b = touch.rot_b.tr_mul(&friction.eval_rate(&touch.s, &slip, compression).s);
-        slots.push(ContactMemory { pair: touch.pair, feature: touch.feature, s_b, point_b: touch.local_b });
+        let compression = law.normal.eval(touch.gap, touch.normal.dot(&touch.u)).force + law.normal.adhesion;
+        let s_w = friction.eval_rate(&trial_of(touch, compression)).s;
+        let Touch { pair, feature, normal: normal_w, rest, local_b: point_b, .. } = *touch;
+        slots.push(ContactMemory { pair, feature, s_w, normal_w, rest, point_b });
+    }
+}
+
+fn trial_of(touch: &Touch, normal_force: f64) -> Trial {
+    let slip = touch.u - touch.normal * touch.normal.dot(&touch.u);
+    Trial { s: touch.s, slip, normal_force, rest: touch.rest, grain: touch.grain, ..Trial::default() }
+}
+
+/// Bristles were integrated in the plane and the axes of the step's start: they turn with the bodies to its end, and rest
+/// follows what the last stage found.
+fn carry_to_the_end(model: &Model, state: &mut State, ws: &Workspace) {
+    let turned = Turned { from: &ws.frames_start, to: &ws.frames };
+    for memory in &mut state.bristles {
+        let bodies = model.pair_bodies(memory.pair as usize);
+        let normal = turned.normal(bodies, &memory.normal_w);
+        memory.s_w = turned.deflection(bodies, &memory.s_w, &memory.normal_w, &normal);
+        memory.normal_w = normal;
+        let touch = ws.touches.iter().find(|t| (t.pair, t.feature) == (memory.pair, memory.feature));
+        if let (Some(touch), Some(Friction::Bristle(law))) = (touch, &model.laws[memory.pair as usize].friction) {
+            let speed = (touch.u - touch.normal * touch.normal.dot(&touch.u)).norm();
+            let rest = law.levels().calc_rest(memory.rest, speed, model.step);
+            memory.rest = law.levels().settle(rest, touch.out.sticks, model.step);
+        }
     }
 }
 
@@ -143,7 +166,7 @@ fn place(model: &Model, state: &mut State, displacement: &mut [f64], from: &From
     }
     state.v.iter_mut().zip(&rate.v).for_each(|(v, r)| *v += r * k);
     state.bristles.clear();
-    let moved = slots.iter().zip(&rate.s).map(|(slot, r)| ContactMemory { s_b: slot.s_b + r * k, ..*slot });
+    let moved = slots.iter().zip(&rate.s).map(|(slot, r)| ContactMemory { s_w: slot.s_w + r * k, ..*slot });
     state.bristles.extend(moved);
 }
 
@@ -184,20 +207,21 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
 }
 
 fn eval_contacts(model: &Model, ws: &mut Workspace, rk: &mut Stages) {
+    // Back from the present frames to those of the step's start.
+    let back = Turned { from: &ws.frames, to: &ws.frames_start };
     for touch in &mut ws.touches {
         let (law, n) = (&model.laws[touch.pair as usize], touch.normal);
-        let u_n = n.dot(&touch.u);
-        let normal = law.normal.eval(touch.gap, u_n);
+        let normal = law.normal.eval(touch.gap, n.dot(&touch.u));
         touch.out.law = normal.force * n;
         touch.out.normal_force = normal.force + law.normal.adhesion;
         touch.out.g = Mat3::zeros();
         if let Some(friction) = &law.friction {
-            let slip = touch.u - u_n * n;
-            let brush = friction.eval_rate(&touch.s, &slip, touch.out.normal_force);
+            let brush = friction.eval_rate(&trial_of(touch, touch.out.normal_force));
             touch.out.law += brush.force;
             (touch.out.s, touch.out.sticks) = (brush.s, brush.sticks);
             if let Some(slot) = find_memory(&rk.slots, touch.pair, touch.feature) {
-                rk.rate.s[slot] = touch.rot_b.tr_mul(&brush.s_rate);
+                let bodies = (touch.body_a, touch.body_b);
+                rk.rate.s[slot] = back.deflection(bodies, &brush.s_rate, &n, &rk.slots[slot].normal_w);
             }
         }
         (touch.out.line, touch.out.force) = (touch.out.law, touch.out.law);

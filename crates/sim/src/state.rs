@@ -45,8 +45,12 @@ pub struct ContactMemory {
     pub pair: u32,
     /// Identity within the pair.
     pub feature: u64,
-    /// Deflection, in B's body axes, m.
-    pub s_b: Vec3,
+    /// Deflection, W axes, m; across `normal_w`.
+    pub s_w: Vec3,
+    /// Contact normal, from A to B, W axes.
+    pub normal_w: Vec3,
+    /// How rested the point is, from 0 (sliding) to 1.
+    pub rest: f64,
     /// The point in B's body frame, m: identity of last resort.
     pub point_b: Vec3,
 }

@@ -210,7 +210,7 @@ fn is_stiff(model: &Model, touches: &[Touch], index: usize) -> bool {
     let law = &model.laws[touch.pair as usize];
     let lighter = mass(touch.body_a).min(mass(touch.body_b));
     let normal = law.normal.eval(touch.gap.min(-1e-5), 0.0);
-    let stiffness = (-normal.d_gap).max(law.friction.map_or(0.0, |f| f.stiffness));
+    let stiffness = (-normal.d_gap).max(law.friction.map_or(0.0, |f| f.spring().0));
     let sharing = touches.iter().filter(|t| t.pair == touch.pair).count() as f64;
     model.step * model.step * sharing * stiffness > RESOLVED * lighter
 }

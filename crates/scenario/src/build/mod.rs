@@ -5,6 +5,7 @@
 mod actuators;
 mod faults;
 mod kinematics;
+mod laws;
 mod shapes;
 mod start;
 mod vehicles;

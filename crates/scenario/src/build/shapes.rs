@@ -4,9 +4,9 @@
 //! vehicle only where a `[[contact]]` names them. Every shape answers to its own name and to its link's.
 
 use super::faults::Faults;
-use crate::spec::{ContactLaw, FrictionLaw, NormalLaw, Scenario, ShapeKind};
-use contact::{Normal, Shape};
-use friction::Bristle;
+use super::laws::pair_law;
+use crate::spec::{Grain, Scenario, ShapeKind};
+use contact::Shape;
 use multibody::{Geometry, RobotDescription};
 use sim::{Base, PairLaw, ShapeSpec, VehicleSpec};
 use spatial::Vec3;
@@ -158,7 +158,22 @@ fn law_of_pair(scenario: &Scenario, vehicles: &[VehicleSpec], a: &Named, b: &Nam
         names_a.iter().find(|a| named(a))?;
     }
     let law = scenario.contact_law(&names_a, &names_b);
-    law.enabled.then(|| pair_law(&law))
+    let grain = scenario.contact_rule(&names_a, &names_b).and_then(|r| r.grain.as_ref());
+    let on_side = |on: &str, names: &[&str]| names.iter().any(|n| crate::glob_matches(on, n));
+    law.enabled.then(|| {
+        let grain = grain.map(|g| (g, on_side(&g.on, &names_b)));
+        PairLaw {
+            grain: grain.map(|(g, on_b)| grain_on(vehicles, if on_b { b } else { a }, g, on_b)),
+            ..pair_law(&law)
+        }
+    })
+}
+
+/// A grain in the axes of the body that carries the shape.
+fn grain_on(vehicles: &[VehicleSpec], shape: &Named, grain: &Grain, on_b: bool) -> sim::Grain {
+    let axis = Vec3::from(grain.axis);
+    let link = shape.spec.vehicle.map(|v| &vehicles[v].tree.links[shape.spec.link]);
+    sim::Grain { on_b, axis: link.map_or(axis, |l| l.frame_bl.rot * axis) }
 }
 
 /// What a shape is fixed to; all that stands still in W is one body.
@@ -166,31 +181,4 @@ fn body_of(vehicles: &[VehicleSpec], shape: &ShapeSpec) -> Option<(usize, usize)
     let v = shape.vehicle?;
     let body = vehicles[v].tree.links[shape.link].body;
     (vehicles[v].base != Base::Fixed || body != 0).then_some((v, body))
-}
-
-fn pair_law(law: &ContactLaw) -> PairLaw {
-    let normal = match law.normal {
-        NormalLaw::HuntCrossley { stiffness_n_per_m_exp, exponent, dissipation_s_per_m } => {
-            contact::NormalLaw::HuntCrossley {
-                stiffness: stiffness_n_per_m_exp,
-                exponent,
-                dissipation: dissipation_s_per_m,
-            }
-        }
-        NormalLaw::Linear { stiffness_n_per_m, damping_n_s_per_m } => {
-            contact::NormalLaw::SpringDamper { stiffness: stiffness_n_per_m, damping: damping_n_s_per_m }
-        }
-    };
-    let friction = match law.friction {
-        FrictionLaw::None => None,
-        FrictionLaw::Bristle(b) => Some(Bristle {
-            mu_static: b.mu_static.unwrap_or(b.mu),
-            mu_kinetic: b.mu,
-            stribeck_speed: b.stribeck_velocity_m_per_s.unwrap_or(1e-3),
-            stiffness: b.stiffness_n_per_m,
-            damping: b.damping_n_s_per_m,
-            viscous: b.viscous_n_s_per_m,
-        }),
-    };
-    PairLaw { normal: Normal::new(normal), friction }
 }

@@ -60,7 +60,7 @@ impl CreepGauge {
                 local_a: frame_a.inverse_point(&frame_b.point(&memory.point_b)),
                 local_b: memory.point_b,
                 normal_b: frame_b.rot.tr_mul(&normal),
-                s_b: memory.s_b,
+                s_b: frame_b.rot.tr_mul(&memory.s_w),
             });
             self.bodies.get_or_insert((a, b, relative(&frame_a, &frame_b)));
         }
@@ -78,7 +78,7 @@ impl CreepGauge {
             let moved = frame_b.rot.tr_mul(&(frame_b.point(&nail.local_b) - frame_a.point(&nail.local_a)));
             let tangential = moved - nail.normal_b * nail.normal_b.dot(&moved);
             total = total.max(tangential.norm());
-            slips.push((nail.local_b, tangential - (memory.s_b - nail.s_b)));
+            slips.push((nail.local_b, tangential - (frame_b.rot.tr_mul(&memory.s_w) - nail.s_b)));
         }
         let now = relative(&world.frame(a), &world.frame(b));
         let turned = log_rotation(&(now.to_pose().rotation * start.to_pose().rotation.inverse())).norm();

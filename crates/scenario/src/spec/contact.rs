@@ -2,6 +2,7 @@
 //!
 //! `f_n(δ, δ̇)` is the normal force, N, for a penetration δ ≥ 0, m; it is never attractive.
 
+use super::friction::{BristleFriction, FrictionLaw};
 use crate::glob::glob_matches;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,6 +23,20 @@ pub struct ContactRule {
     /// Friction law; that of `[contact_default]` where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<FrictionLaw>,
+    /// The direction along which the friction levels are meant, for a law with `across_ratio`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub grain: Option<Grain>,
+}
+
+/// A direction of a surface, as brushed or turned.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Grain {
+    /// The side of the contact that it belongs to, as in `between`.
+    #[schemars(extend("x-refers" = "pattern"))]
+    pub on: String,
+    /// The direction, axes of that side's link; its length does not matter.
+    pub axis: [f64; 3],
 }
 
 /// The laws of one pair: of those that no rule names, or as resolved by [`super::Scenario::contact_law`].
@@ -46,14 +61,16 @@ impl Default for ContactLaw {
     fn default() -> Self {
         Self {
             enabled: true,
-            normal: NormalLaw::HuntCrossley { stiffness_n_per_m_exp: 1.0e6, exponent: 1.5, dissipation_s_per_m: 0.6 },
+            normal: NormalLaw::HuntCrossley {
+                stiffness_n_per_m_exp: 1.0e6,
+                exponent: 1.5,
+                dissipation_s_per_m: 0.6,
+                adhesion_n: 0.0,
+            },
             friction: FrictionLaw::Bristle(BristleFriction {
-                mu: 0.3,
-                mu_static: None,
-                stribeck_velocity_m_per_s: None,
                 stiffness_n_per_m: 1.0e5,
                 damping_n_s_per_m: 50.0,
-                viscous_n_s_per_m: 0.0,
+                ..BristleFriction::new(0.3)
             }),
         }
     }
@@ -76,6 +93,10 @@ pub enum NormalLaw {
         #[serde(default)]
         #[schemars(range(min = 0.0))]
         dissipation_s_per_m: f64,
+        /// Pull-off force while the surfaces overlap, N.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        adhesion_n: f64,
     },
     /// f_n = k δ + d δ̇, bounded below by zero.
     Linear {
@@ -86,54 +107,16 @@ pub enum NormalLaw {
         #[serde(default)]
         #[schemars(range(min = 0.0))]
         damping_n_s_per_m: f64,
+        /// Pull-off force while the surfaces overlap, N.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        adhesion_n: f64,
     },
 }
 
 /// Exponent of a sphere on a plane.
 fn hertz() -> f64 {
     1.5
-}
-
-/// Force in the tangent plane.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "law", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum FrictionLaw {
-    /// One effective bristle per contact point: a spring that the slip deflects, bounded by μ f_n.
-    Bristle(BristleFriction),
-    /// Smooth: no tangential force.
-    None,
-}
-
-/// Parameters of the bristle law.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend(
-    "x-ordered" = [["mu", "mu_static"]],
-    "dependentRequired" = { "mu_static": ["stribeck_velocity_m_per_s"], "stribeck_velocity_m_per_s": ["mu_static"] },
-))]
-pub struct BristleFriction {
-    /// Kinetic friction level μ.
-    #[schemars(range(min = 0.0, max = 10.0))]
-    pub mu: f64,
-    /// Static friction level, at least `mu`; by default equal to it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0, max = 10.0))]
-    pub mu_static: Option<f64>,
-    /// Slip speed over which the level falls from static to kinetic, m/s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub stribeck_velocity_m_per_s: Option<f64>,
-    /// Stiffness of the bristle, N/m.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub stiffness_n_per_m: f64,
-    /// Damping of the bristle, N·s/m.
-    #[serde(default)]
-    #[schemars(range(min = 0.0))]
-    pub damping_n_s_per_m: f64,
-    /// Viscous coefficient beside the bound, N·s/m.
-    #[serde(default)]
-    #[schemars(range(min = 0.0))]
-    pub viscous_n_s_per_m: f64,
 }
 
 impl ContactRule {
@@ -150,8 +133,7 @@ impl super::Scenario {
     /// Each side is given by all the names it goes by (its shape, its link, as `vehicle/name`). The last matching rule
     /// decides, and what it leaves open comes from `[contact_default]`.
     pub fn contact_law(&self, names_a: &[&str], names_b: &[&str]) -> ContactLaw {
-        let matches = |rule: &&ContactRule| names_a.iter().any(|a| names_b.iter().any(|b| rule.matches(a, b)));
-        match self.contacts.iter().rev().find(matches) {
+        match self.contact_rule(names_a, names_b) {
             None => self.contact_default,
             Some(rule) => ContactLaw {
                 enabled: rule.enabled,
@@ -159,5 +141,10 @@ impl super::Scenario {
                 friction: rule.friction.unwrap_or(self.contact_default.friction),
             },
         }
+    }
+    /// The last rule that names a pair of shapes; each side by all the names it goes by.
+    pub fn contact_rule(&self, names_a: &[&str], names_b: &[&str]) -> Option<&ContactRule> {
+        let matches = |rule: &&ContactRule| names_a.iter().any(|a| names_b.iter().any(|b| rule.matches(a, b)));
+        self.contacts.iter().rev().find(matches)
     }
 }

@@ -13,6 +13,7 @@ mod actuator;
 mod campaign;
 mod contact;
 mod effect;
+mod friction;
 mod pose;
 mod sensor;
 mod shape;
@@ -21,8 +22,9 @@ mod vehicle;
 
 pub use actuator::{Actuator, ActuatorKind, Drive, DriveMotion, JointDrive};
 pub use campaign::{Campaign, Disperse, Expect, Normal, Scalar, Uniform};
-pub use contact::{BristleFriction, ContactLaw, ContactRule, FrictionLaw, NormalLaw};
+pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw};
 pub use effect::{Effect, ParamValue};
+pub use friction::{BristleFriction, Dahl, ElastoPlastic, FrictionLaw, LuGre, RegularisedCoulomb};
 pub use pose::{PoseSpec, TwistSpec};
 pub use sensor::{Sensor, SensorKind};
 pub use shape::{Shape, ShapeKind};

@@ -100,7 +100,7 @@ fn damped(x0: f64, v0: f64, t: f64) -> f64 {
 const STICK_SPEED: f64 = 0.02;
 
 fn sticking_block(setup: &Setup) -> World {
-    let law = PairLaw { normal: linear(1e4, 20.0), friction: Some(bristle(0.5, SPRING.1, SPRING.2)) };
+    let law = PairLaw::new(linear(1e4, 20.0), Some(bristle(0.5, SPRING.1, SPRING.2)));
     sliding_block(law, STICK_SPEED, setup)
 }
 
@@ -111,7 +111,7 @@ const SLIDE_LAW: (f64, f64) = (0.4, 1e5);
 /// Root mean square over the speeds.
 fn stopping_error(setup: &Setup, seconds: f64) -> f64 {
     let (mu, k) = SLIDE_LAW;
-    let law = PairLaw { normal: linear(1e5, 100.0), friction: Some(bristle(mu, k, 0.0)) };
+    let law = PairLaw::new(linear(1e5, 100.0), Some(bristle(mu, k, 0.0)));
     let error = |speed: &f64| x(&finish(sliding_block(law, *speed, setup), seconds)) - stopped_at(*speed, seconds);
     rms(SLIDES.iter().map(error))
 }

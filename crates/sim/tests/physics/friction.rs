@@ -14,12 +14,12 @@ const CREEP: f64 = 1e-12;
 
 /// Stiff enough that 1 ms is far beyond an explicit method's limit: h² k/m = 1 per point.
 fn stiff() -> PairLaw {
-    PairLaw { normal: linear(1e6, 1e3), friction: Some(bristle(MU, 1e6, 100.0)) }
+    PairLaw::new(linear(1e6, 1e3), Some(bristle(MU, 1e6, 100.0)))
 }
 
 /// Soft enough for the explicit integrators at 1 ms.
 fn soft() -> PairLaw {
-    PairLaw { normal: linear(2e4, 100.0), friction: Some(bristle(MU, 2e4, 40.0)) }
+    PairLaw::new(linear(2e4, 100.0), Some(bristle(MU, 2e4, 40.0)))
 }
 
 fn position(world: &World) -> Vec3 {
@@ -136,7 +136,7 @@ fn pulled_block_spec(integrator: Integrator, puller: Puller) -> ModelSpec {
         ShapeSpec { pose_ls: Pose::translation(0.0, 0.0, -0.05), ..shape("floor", None, Shape::HalfSpace) },
         ShapeSpec { link: 2, ..shape("block", Some(0), Shape::Cuboid { half_extents: half }) },
     ];
-    spec.pairs = vec![([0, 1], PairLaw { normal: linear(1e6, 1e3), friction: Some(bristle(MU, 1e6, 0.0)) })];
+    spec.pairs = vec![([0, 1], PairLaw::new(linear(1e6, 1e3), Some(bristle(MU, 1e6, 0.0))))];
     let limit = f64::INFINITY;
     let kind = match puller {
         Puller::Drive => ActuatorKind::JointDrive { coordinate: 0, stiffness: 100.0, damping: 0.0, limit },
@@ -206,7 +206,7 @@ fn laws_are_met_for_a_light_block_beside_a_heavy_one() {
     };
     spec.vehicles.push(press);
     spec.shapes.push(shape("press", Some(1), Shape::Cuboid { half_extents: half }));
-    spec.pairs.push(([0, 2], PairLaw { normal: linear(1e9, 1e6), friction: Some(bristle(MU, 1e9, 0.0)) }));
+    spec.pairs.push(([0, 2], PairLaw::new(linear(1e9, 1e6), Some(bristle(MU, 1e9, 0.0)))));
     let mut beside = world(spec);
     beside.state_mut().bases[1] = Pose::translation(5.0, 0.0, 0.0);
     let alone = pull(&mut pulled_block(integrator, puller), puller);
@@ -215,7 +215,7 @@ fn laws_are_met_for_a_light_block_beside_a_heavy_one() {
 
 #[test]
 fn block_on_a_friction_stiffness_of_1e7_rests_and_every_solve_converges() {
-    let law = PairLaw { normal: linear(1e7, 1e3), friction: Some(bristle(MU, 1e7, 0.0)) };
+    let law = PairLaw::new(linear(1e7, 1e3), Some(bristle(MU, 1e7, 0.0)));
     let mut world = block_on_slope(0.0, law, &Setup::new(Integrator::ImplicitEuler));
     world.set_base_twists(&[crate::support::twist([0.0, 0.0, 0.2], [0.3, 0.1, 0.0])]);
     run(&mut world, 2_000);

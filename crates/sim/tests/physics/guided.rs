@@ -137,7 +137,7 @@ fn block_on_an_air_bearing_stops_against_a_wall_of_contact() {
         let pose_ls = Pose::from_parts(Vec3::new(0.15, 0.0, 0.0).into(), turn);
         spec.shapes =
             vec![sim::ShapeSpec { pose_ls, ..wall }, shape("box", Some(0), Shape::Cuboid { half_extents: half })];
-        spec.pairs = vec![([0, 1], PairLaw { normal: linear(1e4, 60.0), friction: Some(bristle(0.3, 1e4, 20.0)) })];
+        spec.pairs = vec![([0, 1], PairLaw::new(linear(1e4, 60.0), Some(bristle(0.3, 1e4, 20.0))))];
         let mut world = world(spec);
         world.set_base_twists(&[twist([0.0, 0.0, 0.5], [0.4, 0.2, 0.0])]);
         let start = Energy::of(&world).kinetic;

@@ -83,7 +83,7 @@ fn divergence_names_time_and_body_and_leaves_the_last_good_state() {
     // Far beyond the explicit methods' limit: h ω = 10.
     let mut found = 0;
     for integrator in [Integrator::SemiImplicitEuler, Integrator::RungeKutta4] {
-        let law = PairLaw { normal: linear(1e8, 0.0), friction: Some(bristle(0.4, 1e8, 0.0)) };
+        let law = PairLaw::new(linear(1e8, 0.0), Some(bristle(0.4, 1e8, 0.0)));
         let mut world = block_on_slope(0.1, law, &Setup::new(integrator));
         world.state_mut().bases[0].translation.vector.z -= 0.02;
         world.state_mut().momentum[0].moment = Vec3::new(1e5, 2e5, 3e5);

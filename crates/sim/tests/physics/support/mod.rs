@@ -5,7 +5,7 @@ pub(crate) mod scenes;
 pub(crate) mod table;
 
 use contact::{Normal, NormalLaw, Shape};
-use friction::Bristle;
+use friction::{Bristle, Friction};
 use multibody::{Inertial, JointDescription, JointKind, LinkDescription, RobotDescription, Tree};
 use sim::{Base, Environment, Integrator, Model, ModelSpec, ShapeSpec, State, VehicleSpec, World};
 use spatial::{Mat3, Pose, Twist, Vec3};
@@ -136,8 +136,8 @@ pub(crate) fn hunt_crossley(stiffness: f64, exponent: f64, dissipation: f64) -> 
     Normal::new(NormalLaw::HuntCrossley { stiffness, exponent, dissipation })
 }
 
-pub(crate) fn bristle(mu: f64, stiffness: f64, damping: f64) -> Bristle {
-    Bristle { mu_static: mu, mu_kinetic: mu, stiffness, damping, ..Bristle::default() }
+pub(crate) fn bristle(mu: f64, stiffness: f64, damping: f64) -> Friction {
+    Bristle { mu_static: mu, mu_kinetic: mu, stiffness, damping, ..Bristle::default() }.into()
 }
 
 pub(crate) fn shape(name: &str, vehicle: Option<usize>, shape: Shape) -> ShapeSpec {

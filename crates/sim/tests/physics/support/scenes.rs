@@ -28,7 +28,7 @@ pub(crate) fn box_hits_plate_spec(setup: &Setup) -> ModelSpec {
     let mut spec = spec(vec![(plate, Base::Free), (block(2.0, half), Base::Free)], setup);
     spec.shapes =
         vec![shape("face", Some(0), Shape::HalfSpace), shape("box", Some(1), Shape::Cuboid { half_extents: half })];
-    spec.pairs = vec![([0, 1], PairLaw { normal: linear(1e4, 40.0), friction: Some(bristle(0.4, 1e4, 20.0)) })];
+    spec.pairs = vec![([0, 1], PairLaw::new(linear(1e4, 40.0), Some(bristle(0.4, 1e4, 20.0))))];
     spec
 }
 
@@ -47,7 +47,7 @@ pub(crate) fn gripper_spec(setup: &Setup) -> ModelSpec {
     let mut spec = spec(vec![(gripper_tree(), Base::Free), (block(2.0, half), Base::Free)], setup);
     let box_shape = shape("box", Some(1), Shape::Cuboid { half_extents: half });
     spec.shapes = vec![finger(1, 1.0), finger(2, -1.0), box_shape];
-    let law = PairLaw { normal: linear(5e4, 50.0), friction: Some(bristle(0.5, 5e4, 30.0)) };
+    let law = PairLaw::new(linear(5e4, 50.0), Some(bristle(0.5, 5e4, 30.0)));
     spec.pairs = vec![([0, 2], law), ([1, 2], law)];
     spec.actuators = (0..2).map(finger_drive).collect();
     spec
@@ -94,7 +94,7 @@ pub(crate) fn shower_of(setup: &Setup, touching: usize) -> World {
     vehicles.extend(shapes.iter().map(|_| (block(0.8, Vec3::repeat(0.05)), Base::Free)));
     let mut spec = spec(vehicles, setup);
     spec.shapes = vec![shape("box", Some(0), Shape::Cuboid { half_extents: half })];
-    let law = PairLaw { normal: hunt_crossley(4e4, 1.5, 0.4), friction: Some(bristle(0.4, 5e3, 8.0)) };
+    let law = PairLaw::new(hunt_crossley(4e4, 1.5, 0.4), Some(bristle(0.4, 5e3, 8.0)));
     for (i, geometry) in shapes.into_iter().enumerate() {
         spec.shapes.push(shape(&format!("shape{i}"), Some(i + 1), geometry));
         spec.pairs.push(([0, i + 1], law));
@@ -187,7 +187,7 @@ pub(crate) fn flying_ball(normal: Normal, gap: f64, speed: f64, setup: &Setup) -
     let floor = shape("floor", None, Shape::HalfSpace);
     let pose_ls = Pose::translation(0.0, 0.0, -0.1);
     spec.shapes = vec![ShapeSpec { pose_ls, ..floor }, shape("ball", Some(0), Shape::Ball { radius: 0.1 })];
-    spec.pairs = vec![([0, 1], PairLaw { normal, friction: None })];
+    spec.pairs = vec![([0, 1], PairLaw::new(normal, None))];
     let mut world = world(spec);
     world.state_mut().bases[0] = Pose::translation(0.0, 0.0, gap);
     world.set_base_twists(&[twist([0.0; 3], [0.0, 0.0, speed])]);
@@ -200,7 +200,7 @@ pub(crate) fn flying_block(normal: Normal, gap: f64, speed: f64, setup: &Setup) 
     let mut spec = spec(vec![(block(1.0, half), Base::Free)], setup);
     let cuboid = Shape::Cuboid { half_extents: half };
     spec.shapes = vec![shape("floor", None, Shape::HalfSpace), shape("block", Some(0), cuboid)];
-    spec.pairs = vec![([0, 1], PairLaw { normal, friction: None })];
+    spec.pairs = vec![([0, 1], PairLaw::new(normal, None))];
     let mut world = world(spec);
     world.state_mut().bases[0] = Pose::translation(0.0, 0.0, half.z + gap);
     world.set_base_twists(&[twist([0.0; 3], [0.0, 0.0, speed])]);

@@ -1,0 +1,92 @@
+//! Friction levels: static, kinetic, what lies between them, and the time that it takes.
+//!
+//!   μ = μ_k + (μ_s − μ_k) w,     w: rest, 0 sliding … 1 rested
+//!
+//! | `stribeck_speed` v_s | `dwell_time` T | rest |
+//! | --- | --- | --- |
+//! | > 0 | 0 | w = exp(−(u/v_s)²): the level falls smoothly with the slip speed u (Stribeck) |
+//! | > 0 | > 0 | ẇ = (exp(−(u/v_s)²) − w)/T where that rises; it falls at once |
+//! | 0 | 0 | w = 1 while the point sticks, 0 while it slides: the level drops where the bristle breaks away |
+//! | 0 | > 0 | ẇ = (1 − w)/T while it sticks, 0 while it slides |
+//!
+//! The dwell time makes the breakaway force grow with the time at rest, and fall with the rate of loading (after Gonthier,
+//! McPhee, Lange and Piedbœuf 2004, whose contact model lags the Stribeck exponential by a slow time constant where it
+//! rises and a short one where it falls; the short one is zero here). A new contact starts rested where T = 0, else with w = 0.
+
+/// How the level moves between static and kinetic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Levels {
+    /// Level of a rested contact, 1.
+    pub rested: f64,
+    /// Level in fast sliding, 1.
+    pub kinetic: f64,
+    /// Speed over which the level falls, m/s; zero: it drops at breakaway.
+    pub stribeck_speed: f64,
+    /// Time constant with which rest returns, s; zero: at once.
+    pub dwell_time: f64,
+}
+
+impl Levels {
+    /// Rest of a contact that has just begun.
+    #[inline]
+    pub fn initial_rest(&self) -> f64 {
+        if self.dwell_time == 0.0 { 1.0 } else { 0.0 }
+    }
+
+    /// Level at a rest, 1.
+    #[inline]
+    pub fn at(&self, rest: f64) -> f64 {
+        self.kinetic + (self.rested - self.kinetic) * rest
+    }
+
+    /// Whether the level never changes.
+    #[inline]
+    pub fn is_constant(&self) -> bool {
+        self.rested == self.kinetic
+    }
+
+    /// exp(−(u/v_s)²); only where there is a Stribeck speed.
+    #[inline]
+    fn stribeck(&self, speed: f64) -> f64 {
+        let x = speed / self.stribeck_speed;
+        (-x * x).exp()
+    }
+
+    /// Rest after `elapsed` s in which it tends to `target`.
+    #[inline]
+    fn follow(&self, rest: f64, target: f64, elapsed: f64) -> f64 {
+        if self.dwell_time == 0.0 || target <= rest {
+            return target;
+        }
+        rest - (target - rest) * (-elapsed / self.dwell_time).exp_m1()
+    }
+
+    /// Rest at a slip speed (m/s) after `elapsed` s; with a drop, the rest to which the trial is held.
+    #[inline]
+    pub fn calc_rest(&self, rest: f64, speed: f64, elapsed: f64) -> f64 {
+        if self.is_constant() || self.stribeck_speed == 0.0 {
+            return rest;
+        }
+        self.follow(rest, self.stribeck(speed), elapsed)
+    }
+
+    /// Rest once it is known whether the point sticks.
+    #[inline]
+    pub fn settle(&self, rest: f64, sticks: bool, elapsed: f64) -> f64 {
+        match (self.stribeck_speed == 0.0, sticks) {
+            (false, _) => rest,
+            (true, true) => self.follow(rest, 1.0, elapsed),
+            (true, false) => 0.0,
+        }
+    }
+
+    /// dμ/du at a slip speed, s/m; zero where the level does not follow the speed at once.
+    #[inline]
+    pub fn calc_slope(&self, speed: f64) -> f64 {
+        if self.is_constant() || self.stribeck_speed == 0.0 || self.dwell_time > 0.0 {
+            return 0.0;
+        }
+        let v = self.stribeck_speed;
+        -2.0 * speed / (v * v) * (self.rested - self.kinetic) * self.stribeck(speed)
+    }
+}
