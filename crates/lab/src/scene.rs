@@ -10,7 +10,7 @@
 use crate::LabError;
 use crate::bench::{Bench, Rig};
 use contact::{Normal, NormalLaw, Shape};
-use friction::Bristle;
+use friction::{Bristle, Friction};
 use multibody::{Geometry, Inertial, JointDescription, JointKind, LinkDescription, RobotDescription, Visual};
 use sim::{Base, PairLaw};
 use spatial::{Mat3, Pose, Vec3};
@@ -111,11 +111,8 @@ pub fn gantry_robot(mass: f64, half: [f64; 3]) -> RobotDescription {
 }
 
 /// Spring-damper contact (N/m and N·s/m per point) with friction.
-pub fn contact_law(stiffness: f64, damping: f64, friction: Bristle) -> PairLaw {
-    PairLaw {
-        normal: Normal { law: NormalLaw::SpringDamper { stiffness, damping }, adhesion: 0.0 },
-        friction: Some(friction),
-    }
+pub fn contact_law(stiffness: f64, damping: f64, friction: impl Into<Friction>) -> PairLaw {
+    PairLaw::new(Normal::new(NormalLaw::SpringDamper { stiffness, damping }), Some(friction.into()))
 }
 
 /// 1e6 N/m per point in the normal and in the bristle, one level: rigid for a block of 1 kg, and far beyond what an

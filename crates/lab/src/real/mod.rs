@@ -11,6 +11,8 @@
 //! Parameters are fitted on one part of a recording and judged on the other. By default the committed ones are judged;
 //! with `--refit` they are found again first.
 
+pub mod fretting;
+pub mod fretting_fit;
 mod search;
 mod table;
 pub mod toss;

@@ -93,7 +93,7 @@ impl Bench {
 fn build_spec(surface: &Surface, rules: &Rules) -> ModelSpec {
     let table = Pose::translation(0.0, 0.0, rules.correction.table);
     let shape = |name: &str, vehicle, pose_ls, shape| ShapeSpec { name: name.to_owned(), vehicle, link: 0, pose_ls, shape };
-    let law = PairLaw { normal: Normal::new(surface.normal), friction: Some(surface.friction) };
+    let law = PairLaw::new(Normal::new(surface.normal), Some(surface.friction.into()));
     ModelSpec {
         vehicles: vec![VehicleSpec { name: "cube".to_owned(), tree: cube_tree(), base: Base::Free }],
         shapes: vec![
