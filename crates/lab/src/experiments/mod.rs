@@ -6,5 +6,5 @@ use crate::Experiment;
 
 /// All experiments, in the order of the report.
 pub fn catalogue() -> Vec<Experiment> {
-    vec![incline::EXPERIMENT]
+    vec![incline::EXPERIMENT, crate::real::entry_tosses::EXPERIMENT, crate::real::entry_fretting::EXPERIMENT]
 }

@@ -84,8 +84,42 @@ impl Loop {
 
     /// Root mean square of the error over that of the measured force, over a range of samples.
     pub fn calc_error(&self, force: &[f64], range: Range<usize>) -> f64 {
-        let sum = |f: &dyn Fn(usize) -> f64| range.clone().map(f).sum::<f64>();
+        self.calc_error_where(force, range, |_| true)
+    }
+
+    /// The same over those samples of the range that are kept.
+    pub fn calc_error_where(&self, force: &[f64], range: Range<usize>, keep: impl Fn(usize) -> bool) -> f64 {
+        let sum = |f: &dyn Fn(usize) -> f64| range.clone().filter(|i| keep(*i)).map(f).sum::<f64>();
         (sum(&|i| (force[i] - self.force[i]).powi(2)) / sum(&|i| self.force[i].powi(2))).sqrt()
+    }
+
+    /// Whether the contact is dragged at a sample: faster than 0.1 mm/s over the five samples around it.
+    pub fn is_moving(&self, i: usize) -> bool {
+        let (a, b) = (i.saturating_sub(2), (i + 2).min(self.x.len() - 1));
+        (self.x[b] - self.x[a]).abs() > 1e-4 * (self.t[b] - self.t[a])
+    }
+
+    /// Measured slope |Δf/Δx| while the contact is dragged from one side to the other and the force passes `range` (N), N/m:
+    /// the median over all passages, up and down alike.
+    pub fn calc_stiffness(&self, range: Range<f64>) -> f64 {
+        let mut slopes = Vec::new();
+        let mut from: Option<usize> = None;
+        for i in 0..self.force.len() {
+            let inside = range.contains(&self.force[i]) && self.is_moving(i);
+            match (inside, from) {
+                (true, None) => from = Some(i),
+                (false, Some(first)) => {
+                    let moved = self.x[i - 1] - self.x[first];
+                    if moved != 0.0 {
+                        slopes.push(((self.force[i - 1] - self.force[first]) / moved).abs());
+                    }
+                    from = None;
+                }
+                _ => {}
+            }
+        }
+        slopes.sort_by(f64::total_cmp);
+        slopes.get(slopes.len() / 2).copied().unwrap_or(f64::NAN)
     }
 
     /// What is left where the mean cycle of the fitted half is all that is said: the loop's own scatter and drift, below

@@ -8,9 +8,13 @@
 //! | `contactnets_cube` | `cube_tosses_000_149.csv` | 150 tosses of an acrylic cube onto a table, 148 Hz (Pfrommer, Halm and Posa 2020) |
 //! | `fretting_friction` | `fretting_200hz.csv` | a loaded contact dragged to and fro over 0.24 mm, 200 Hz (FrictionModels.jl) |
 //!
-//! Parameters are fitted on one part of a recording and judged on the other. By default the committed ones are judged;
+//! **recording → state and drive → law or world → errors → fit**; the entries of the catalogue are `entry_fretting` and
+//! `entry_tosses`. Parameters are fitted on one part of a recording and judged on the other. By default the committed ones are judged;
 //! with `--refit` they are found again first.
 
+pub mod committed;
+pub mod entry_fretting;
+pub mod entry_tosses;
 pub mod fretting;
 pub mod fretting_fit;
 mod search;
@@ -26,6 +30,9 @@ use std::path::{Path, PathBuf};
 
 /// Environment variable that names the folder of the recordings.
 pub const RECORDINGS: &str = "SOFTDOCK_RECORDINGS";
+
+/// How the question of an experiment ends that cannot run without recordings.
+pub const NEEDS_RECORDINGS: &str = "(needs recordings)";
 
 /// Why a recording could not be judged.
 #[derive(Debug, thiserror::Error)]

@@ -5,7 +5,7 @@
 //! parameters, all of which are positive.
 
 use super::toss::{Correction, Start, Summary, Toss};
-use super::toss_world::{Bench, Rules, Surface};
+use super::toss_world::{Thrower, Rules, Surface};
 use super::{RealError, Search};
 use contact::NormalLaw;
 use friction::Bristle;
@@ -146,7 +146,7 @@ impl Tosses {
         let middle = range.start + range.len() / 2;
         let surface = corner.surface();
         let part = |range: std::ops::Range<usize>| -> Result<Vec<Summary>, RealError> {
-            let mut bench = Bench::new(&surface, &self.rules)?;
+            let mut bench = Thrower::new(&surface, &self.rules)?;
             Ok(range.map(|i| bench.summarise(&self.starts[i], &self.tosses[i])).collect())
         };
         let (first, second) = std::thread::scope(|scope| {

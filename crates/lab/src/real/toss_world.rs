@@ -37,13 +37,13 @@ pub struct Rules {
 
 /// A world for one set of parameters, used for one toss after the other.
 #[derive(Debug)]
-pub struct Bench {
+pub struct Thrower {
     world: World,
     at_rest: State,
     substeps: usize,
 }
 
-impl Bench {
+impl Thrower {
     /// Builds the world.
     pub fn new(surface: &Surface, rules: &Rules) -> Result<Self, RealError> {
         let model = Arc::new(Model::build(build_spec(surface, rules))?);
@@ -53,9 +53,7 @@ impl Bench {
 
     /// Poses at the sample times of a toss; short of its end where the run diverged.
     pub fn simulate(&mut self, start: &Start, samples: usize) -> Vec<Pose> {
-        self.world.state_mut().clone_from(&self.at_rest);
-        self.world.state_mut().bases[0] = start.pose;
-        self.world.set_base_twists(&[start.twist]);
+        self.reset(start);
         let mut poses = Vec::with_capacity(samples);
         poses.push(start.pose);
         while poses.len() < samples {
@@ -84,9 +82,16 @@ impl Bench {
         miss.summarise(toss)
     }
 
-    /// The world, for a look at the last toss.
-    pub fn world(&self) -> &World {
-        &self.world
+    /// The world at the start of a toss.
+    pub fn throw(mut self, start: &Start) -> World {
+        self.reset(start);
+        self.world
+    }
+
+    fn reset(&mut self, start: &Start) {
+        self.world.state_mut().clone_from(&self.at_rest);
+        self.world.state_mut().bases[0] = start.pose;
+        self.world.set_base_twists(&[start.twist]);
     }
 }
 
