@@ -95,7 +95,7 @@ class Toss:
         p0, v0 = np.linalg.lstsq(a, target, rcond=None)[0]
         # Gauss-Newton: R(t) = exp(w t) R0 in W axes, residuals as rotation vectors.
         q0, w = self.q[0], rotations(self.q[:1])[0] @ self.recorded[3]
-        for _ in range(5):
+        for _ in range(20):
             r = np.array([quat_log(quat_mul(self.q[k], conj(quat_mul(quat_exp(w * t[k]), q0)))) for k in range(n)])
             d0, dw = np.linalg.lstsq(a, r, rcond=None)[0]
             q0, w = quat_mul(quat_exp(d0), q0), w + dw
