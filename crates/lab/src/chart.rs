@@ -213,8 +213,7 @@ impl Axis {
     }
 
     fn widen(&mut self, per_pixel: f64) {
-        let (middle, half) =
-            (0.5 * (self.low + self.high), 0.5 * per_pixel * (self.pixels.1 - self.pixels.0).abs());
+        let (middle, half) = (0.5 * (self.low + self.high), 0.5 * per_pixel * (self.pixels.1 - self.pixels.0).abs());
         (self.low, self.high) = (middle - half, middle + half);
     }
 
@@ -344,8 +343,10 @@ mod tests {
 
     #[test]
     fn equal_scales_are_equal() {
-        let (mut across, mut up) =
-            (Axis::new([0.0, 1.0].into_iter(), false, (0.0, 500.0)), Axis::new([0.0, 4.0].into_iter(), false, (300.0, 0.0)));
+        let (mut across, mut up) = (
+            Axis::new([0.0, 1.0].into_iter(), false, (0.0, 500.0)),
+            Axis::new([0.0, 4.0].into_iter(), false, (300.0, 0.0)),
+        );
         equalise(&mut across, &mut up);
         assert!((across.per_pixel() - up.per_pixel()).abs() < 1e-12);
     }

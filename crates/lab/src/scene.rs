@@ -102,11 +102,7 @@ pub fn gantry_robot(mass: f64, half: [f64; 3]) -> RobotDescription {
         name: "gantry".to_owned(),
         file: "gantry (built in)".into(),
         links: vec![bare("frame"), bare("carriage_x"), bare("carriage_y"), block],
-        joints: vec![
-            slide("along_x", 0, Vec3::x()),
-            slide("along_y", 1, Vec3::y()),
-            slide("lift", 2, Vec3::z()),
-        ],
+        joints: vec![slide("along_x", 0, Vec3::x()), slide("along_y", 1, Vec3::y()), slide("lift", 2, Vec3::z())],
     }
 }
 
@@ -118,8 +114,7 @@ pub fn contact_law(stiffness: f64, damping: f64, friction: impl Into<Friction>) 
 /// 1e6 N/m per point in the normal and in the bristle, one level: rigid for a block of 1 kg, and far beyond what an
 /// explicit method holds at 1 ms.
 pub fn stiff_contact(mu: f64) -> PairLaw {
-    let bristle =
-        Bristle { mu_static: mu, mu_kinetic: mu, stiffness: 1e6, damping: 100.0, ..Bristle::default() };
+    let bristle = Bristle { mu_static: mu, mu_kinetic: mu, stiffness: 1e6, damping: 100.0, ..Bristle::default() };
     contact_law(1e6, 1e3, bristle)
 }
 

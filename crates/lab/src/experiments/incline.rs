@@ -19,9 +19,13 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
     let step = options.step.unwrap_or(1e-3);
     let mut outcome = Outcome::default();
     let hold = if options.quick { 60.0 } else { 3600.0 };
-    for angle_deg in [10.0, 18.0] {
-        let creep = measure_creep(angle_deg, hold, step)?;
-        outcome.figures.push(Figure::at_most(format!("creep at {angle_deg}° over {hold} s"), creep, 1e-12, "m/s"));
+    let resting = [10.0, 18.0];
+    let creeps = std::thread::scope(|scope| {
+        let runs = resting.map(|angle_deg| scope.spawn(move || measure_creep(angle_deg, hold, step)));
+        runs.map(|run| run.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    });
+    for (angle_deg, creep) in resting.into_iter().zip(creeps) {
+        outcome.figures.push(Figure::at_most(format!("creep at {angle_deg}° over {hold} s"), creep?, 1e-12, "m/s"));
     }
     let angles = [24.0_f64, 30.0, 37.0, 45.0];
     let mut points = Vec::new();

@@ -1,0 +1,52 @@
+//! Every experiment's figures hold, in the quick form; `softdock lab --report` judges the whole.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use lab::{Options, chart_svg};
+
+/// Runs an experiment quickly; says every figure, and which do not hold.
+fn figures_of(name: &str) {
+    let experiment = lab::find(name).unwrap();
+    let outcome = (experiment.run)(&Options { step: None, quick: true }).unwrap();
+    assert!(outcome.figures.len() > 1, "{name} measures something");
+    for row in lab::report::rows(&outcome) {
+        println!("{}", row.join(" | "));
+    }
+    let missed: Vec<_> = outcome.figures.iter().filter(|f| !f.holds()).collect();
+    assert!(missed.is_empty(), "{missed:#?}");
+    for chart in &outcome.charts {
+        assert!(!chart_svg(chart).contains("NaN"), "{}", chart.title);
+    }
+}
+
+macro_rules! experiments {
+    ($($test:ident: $name:literal),* $(,)?) => {
+        const TESTED: &[&str] = &[$($name),*];
+        $(#[test]
+        fn $test() {
+            figures_of($name);
+        })*
+    };
+}
+
+experiments! {
+    incline: "incline",
+    slider_line: "slider-line",
+    slider_l: "slider-l",
+    slider_circle: "slider-circle",
+    stick_slip: "stick-slip",
+    dwell: "dwell",
+    spinning_disc: "spinning-disc",
+    oscillating_load: "oscillating-load",
+    anisotropy: "anisotropy",
+}
+
+#[test]
+fn every_experiment_is_tested_and_has_its_own_name() {
+    let mut names: Vec<&str> = lab::catalogue().iter().map(|e| e.name).collect();
+    names.sort_unstable();
+    let mut tested = TESTED.to_vec();
+    tested.sort_unstable();
+    assert_eq!(names, tested);
+    names.dedup();
+    assert_eq!(names.len(), lab::catalogue().len());
+}
