@@ -85,10 +85,9 @@ fn answer(experiment: Experiment, options: &Options) -> anyhow::Result<Option<An
     }
 }
 
-/// Whether an experiment cannot be part of a report because nobody said where its recordings are.
+/// Says of an experiment that cannot be part of a report that its recordings are not here.
 fn lacks_recordings(experiment: Experiment, options: &Options) -> bool {
-    let lacks = experiment.question.ends_with(lab::real::NEEDS_RECORDINGS)
-        && lab::real::find_folder(options.data.as_deref()).is_err();
+    let lacks = lab::real::lacks_recordings(&experiment, options.data.as_deref());
     if lacks {
         eprintln!("{} SKIPPED: {}", experiment.name, lab::real::RealError::NoFolder);
     }

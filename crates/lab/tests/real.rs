@@ -1,5 +1,5 @@
 //! Real recordings: what is fitted and judged, with the recordings where they are there, and with synthetic ones always.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use friction::{Bristle, Friction};
 use lab::real::fretting::Loop;
@@ -107,7 +107,10 @@ fn two_threads_judge_like_one() {
     let (start, toss) = flight(9.81);
     let mut all = Tosses::recorded(vec![toss; 5]);
     for (k, s) in all.starts.iter_mut().enumerate() {
-        *s = Start { pose: Pose::translation(0.0, 0.0, 0.06 + 0.01 * k as f64) * start.pose.rotation, twist: start.twist };
+        *s = Start {
+            pose: Pose::translation(0.0, 0.0, 0.06 + 0.01 * k as f64) * start.pose.rotation,
+            twist: start.twist,
+        };
     }
     let corner = committed::CORRECTED;
     let mut thrower = Thrower::new(&corner.surface(), &all.rules).unwrap();

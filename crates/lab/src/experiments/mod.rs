@@ -16,8 +16,6 @@ use crate::Experiment;
 /// All experiments, in the order of the report.
 pub fn catalogue() -> Vec<Experiment> {
     vec![
-        crate::real::entry_tosses::EXPERIMENT,
-        crate::real::entry_fretting::EXPERIMENT,
         incline::EXPERIMENT,
         slider_line::EXPERIMENT,
         slider_l::EXPERIMENT,
@@ -27,5 +25,7 @@ pub fn catalogue() -> Vec<Experiment> {
         disc::EXPERIMENT,
         oscillating::EXPERIMENT,
         anisotropy::EXPERIMENT,
+        crate::real::entry_tosses::EXPERIMENT,
+        crate::real::entry_fretting::EXPERIMENT,
     ]
 }

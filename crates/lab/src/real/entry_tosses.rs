@@ -127,9 +127,11 @@ fn describe(case: &Case, is_quick: bool) -> String {
 /// Mean errors of the judged tosses over the time from their first impact.
 fn add_charts(outcome: &mut Outcome, case: &Case) -> Result<(), RealError> {
     let titles = [("Position", "mean error, % of the width"), ("Rotation", "mean error, deg")];
-    let runs = [("before fitting", calc_misses(case, &committed::BEFORE)?), ("fitted", calc_misses(case, &case.fitted)?)];
+    let runs =
+        [("before fitting", calc_misses(case, &committed::BEFORE)?), ("fitted", calc_misses(case, &case.fitted)?)];
     for (k, (what, up)) in titles.into_iter().enumerate() {
-        let mut chart = Chart::new(format!("{what}, tosses 100–149, data corrected"), "time from the first impact, s", up);
+        let mut chart =
+            Chart::new(format!("{what}, tosses 100–149, data corrected"), "time from the first impact, s", up);
         for (name, misses) in &runs {
             chart = chart.line(*name, calc_mean_curve(case, misses, k));
         }

@@ -69,14 +69,14 @@ impl Loop {
         let mut total = vec![0.0; end];
         for law in laws {
             let (mut s, mut rest) = (Vec3::zeros(), law.initial_rest());
-            for i in 1..end {
+            for (i, total) in total.iter_mut().enumerate().skip(1) {
                 let (moved, elapsed) = (Vec3::x() * (self.x[i] - self.x[i - 1]), self.t[i] - self.t[i - 1]);
                 let normal_force = self.normal[i] / laws.len() as f64;
                 let slip = moved / elapsed;
                 let brush =
                     law.eval(&Trial { s, s_trial: s + moved, slip, elapsed, normal_force, rest, ..Trial::default() });
                 (s, rest) = (brush.s, brush.rest);
-                total[i] += brush.force.x;
+                *total += brush.force.x;
             }
         }
         total

@@ -58,15 +58,31 @@ impl Family {
         match self {
             Self::Coulomb => &["mu", "transition speed, m/s", "viscous, N s/m"],
             Self::Dahl => &["mu", "stiffness, N/m"],
-            Self::LuGre => {
-                &["mu kinetic", "mu static - kinetic", "Stribeck speed, m/s", "stiffness, N/m", "damping, N s/m", "viscous, N s/m"]
-            }
-            Self::ElastoPlastic => {
-                &["mu kinetic", "mu static - kinetic", "Stribeck speed, m/s", "stiffness, N/m", "damping, N s/m", "viscous, N s/m", "break-away"]
-            }
-            Self::Bristle => {
-                &["mu kinetic", "mu static - kinetic", "Stribeck speed, m/s", "stiffness, N/m", "damping, N s/m", "viscous, N s/m"]
-            }
+            Self::LuGre => &[
+                "mu kinetic",
+                "mu static - kinetic",
+                "Stribeck speed, m/s",
+                "stiffness, N/m",
+                "damping, N s/m",
+                "viscous, N s/m",
+            ],
+            Self::ElastoPlastic => &[
+                "mu kinetic",
+                "mu static - kinetic",
+                "Stribeck speed, m/s",
+                "stiffness, N/m",
+                "damping, N s/m",
+                "viscous, N s/m",
+                "break-away",
+            ],
+            Self::Bristle => &[
+                "mu kinetic",
+                "mu static - kinetic",
+                "Stribeck speed, m/s",
+                "stiffness, N/m",
+                "damping, N s/m",
+                "viscous, N s/m",
+            ],
             Self::Bristles(_) => &["mu", "first reach, m", "last reach, m", "damping, N s/m", "viscous, N s/m"],
         }
     }

@@ -26,6 +26,7 @@ pub mod toss_world;
 pub use search::{Found, Search};
 pub use table::Table;
 
+use crate::Experiment;
 use std::path::{Path, PathBuf};
 
 /// Environment variable that names the folder of the recordings.
@@ -68,4 +69,9 @@ pub enum RealError {
 pub fn find_folder(given: Option<&Path>) -> Result<PathBuf, RealError> {
     let from_environment = || std::env::var_os(RECORDINGS).map(PathBuf::from);
     given.map(Path::to_owned).or_else(from_environment).ok_or(RealError::NoFolder)
+}
+
+/// Whether an experiment cannot run because nobody said where its recordings are.
+pub fn lacks_recordings(experiment: &Experiment, given: Option<&Path>) -> bool {
+    experiment.question.ends_with(NEEDS_RECORDINGS) && find_folder(given).is_err()
 }

@@ -26,7 +26,12 @@ impl Table {
         for (i, line) in lines {
             let cells: Vec<&str> = line.split(',').collect();
             if cells.len() != columns.len() {
-                return Err(content(format!("line {}: {} cells, the header has {}", i + 1, cells.len(), columns.len())));
+                return Err(content(format!(
+                    "line {}: {} cells, the header has {}",
+                    i + 1,
+                    cells.len(),
+                    columns.len()
+                )));
             }
             for (cell, (name, values)) in cells.iter().zip(&mut columns) {
                 let value = cell.trim().parse::<f64>().ok().filter(|x| x.is_finite());

@@ -5,7 +5,7 @@
 //! parameters, all of which are positive.
 
 use super::toss::{Correction, Start, Summary, Toss};
-use super::toss_world::{Thrower, Rules, Surface};
+use super::toss_world::{Rules, Surface, Thrower};
 use super::{RealError, Search};
 use contact::NormalLaw;
 use friction::Bristle;

@@ -97,7 +97,8 @@ impl Thrower {
 
 fn build_spec(surface: &Surface, rules: &Rules) -> ModelSpec {
     let table = Pose::translation(0.0, 0.0, rules.correction.table);
-    let shape = |name: &str, vehicle, pose_ls, shape| ShapeSpec { name: name.to_owned(), vehicle, link: 0, pose_ls, shape };
+    let shape =
+        |name: &str, vehicle, pose_ls, shape| ShapeSpec { name: name.to_owned(), vehicle, link: 0, pose_ls, shape };
     let law = PairLaw::new(Normal::new(surface.normal), Some(surface.friction.into()));
     ModelSpec {
         vehicles: vec![VehicleSpec { name: "cube".to_owned(), tree: cube_tree(), base: Base::Free }],
