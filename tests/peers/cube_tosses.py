@@ -34,6 +34,9 @@ COMMITTED = [
     ("defaults", "pyramidal", "recorded", [0.15, 0.02, 1.0, 1.0, 0.0]),
     ("elliptic", "elliptic", "recorded", [0.15, 0.02, 1.0, 1.0, 0.0]),
     ("fitted by hand", "elliptic", "recorded", [0.18, 0.004, 1.0, 1.0, 0.0]),
+    ("fitted mu, solref", "elliptic", "recorded", [0.1907, 0.0060877, 1.4094, 1.0, 0.0]),
+    ("fitted mu, solref", "elliptic", "corrected", [0.1807, 0.0026105, 1.5016, 1.0, 0.0]),
+    ("fitted mu, solref, impratio, corner radius", "elliptic", "recorded", [0.1791, 0.0049567, 3.088, 13.537, 0.0072948]),
 ]
 FITS = [
     # name, treatment, which parameters are free (mu, tau, ratio, impratio, radius), start

@@ -29,13 +29,19 @@ struct Case {
     name: &'static str,
     tosses: Tosses,
     fitted: Corner,
+    must_beat: bool,
 }
 
 fn run(options: &Options) -> Result<Outcome, LabError> {
     let tosses = load_tosses(&find_folder(options.data.as_deref())?)?;
     let mut cases = vec![
-        Case { name: "corrected", tosses: Tosses::corrected(tosses.clone()), fitted: committed::CORRECTED },
-        Case { name: "as recorded", tosses: Tosses::recorded(tosses), fitted: committed::RECORDED },
+        Case {
+            name: "corrected",
+            tosses: Tosses::corrected(tosses.clone()),
+            fitted: committed::CORRECTED,
+            must_beat: true,
+        },
+        Case { name: "as recorded", tosses: Tosses::recorded(tosses), fitted: committed::RECORDED, must_beat: false },
     ];
     let mut outcome = Outcome::default();
     for case in &mut cases {
@@ -75,7 +81,12 @@ fn add_case(outcome: &mut Outcome, case: &Case, is_quick: bool) -> Result<(), Re
     let fitted = Summary::mean(&after);
     let to_beat = [("position", "%", TO_BEAT[0]), ("rotation", "deg", TO_BEAT[1])];
     for (k, (what, unit, bound)) in to_beat.into_iter().enumerate() {
-        outcome.figures.push(Figure::at_most(name(&format!("{what}, tosses 100–149")), fitted.whole[k], bound, unit));
+        let what = name(&format!("{what}, tosses 100–149"));
+        outcome.figures.push(if case.must_beat {
+            Figure::at_most(what, fitted.whole[k], bound, unit)
+        } else {
+            Figure::shown(what, fitted.whole[k], bound, unit)
+        });
     }
     add_pair(outcome, &name("until 47 ms after the first impact"), fitted.early);
     add_pair(outcome, &name("at the end, at rest"), fitted.end);

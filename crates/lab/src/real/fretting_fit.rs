@@ -53,6 +53,11 @@ impl Family {
         }
     }
 
+    /// Whether it is one of the extended bristle model's.
+    pub fn is_bristle(self) -> bool {
+        matches!(self, Self::Bristle | Self::Bristles(_))
+    }
+
     /// Names of the parameters, with units.
     pub fn parameters(self) -> &'static [&'static str] {
         match self {
