@@ -142,7 +142,8 @@ fn print((experiment, outcome): &Answer) {
         println!("  {}  {}", cells.join("  "), row[4]);
     }
     for note in &outcome.notes {
-        println!("\n  {note}");
+        println!();
+        note.lines().for_each(|line| println!("  {line}"));
     }
 }
 
@@ -157,7 +158,7 @@ fn report_on_all(arguments: &Arguments, options: &Options) -> anyhow::Result<Sta
         answers.push(answer);
     }
     let (table, figures) = (report::markdown(&answers), report::figures_json(&answers));
-    record::write_file(&folder.file("report.md"), table.as_bytes())?;
+    record::write_file(&folder.file("report.md"), (table.clone() + &report::notes_markdown(&answers)).as_bytes())?;
     record::write_file(&folder.file("report.html"), report::html(&answers).as_bytes())?;
     record::write_file(&folder.file("figures.json"), format!("{figures:#}\n").as_bytes())?;
     let place = folder.finish(&report::summary(&answers))?;

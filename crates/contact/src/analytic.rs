@@ -2,6 +2,7 @@
 //!
 //! Points are written as (feature, point on A, normal from A to B, gap); the point on B is a + gap n.
 
+use crate::ContactPoint;
 use spatial::{Frame, Vec3};
 
 /// A point before it belongs to a pair.
@@ -11,6 +12,21 @@ pub(crate) struct Raw {
     pub(crate) point_a: Vec3,
     pub(crate) normal: Vec3,
     pub(crate) gap: f64,
+}
+
+impl Raw {
+    /// The point as one of a pair, with its share of the pair's law.
+    pub(crate) fn in_pair(&self, pair: u32, weight: f64) -> ContactPoint {
+        ContactPoint {
+            pair,
+            feature: self.feature,
+            point_a_w: self.point_a,
+            point_b_w: self.point_a + self.gap * self.normal,
+            normal_w: self.normal,
+            gap: self.gap,
+            weight,
+        }
+    }
 }
 
 /// Two balls; concentric ones part along z.

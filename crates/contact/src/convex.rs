@@ -41,7 +41,37 @@ pub(crate) struct Convex {
 const CUBOID: u32 = 20;
 const LINE: u32 = 2;
 
+impl Core {
+    /// Axes along which the core ends in flat faces: the first so many of x, y, z, or z alone.
+    #[inline]
+    pub(crate) fn face_axes(&self) -> &'static [usize] {
+        match self {
+            Core::Segment { .. } => &[],
+            Core::Cuboid { .. } => &[0, 1, 2],
+            Core::Cylinder(_) => &[2],
+        }
+    }
+
+    /// Axes along which straight edges (or lines of a curved side) run.
+    #[inline]
+    pub(crate) fn edge_axes(&self) -> &'static [usize] {
+        match self {
+            Core::Cuboid { .. } => &[0, 1, 2],
+            Core::Segment { .. } | Core::Cylinder(_) => &[2],
+        }
+    }
+}
+
 impl Convex {
+    /// Number of the core as a whole.
+    pub(crate) fn whole(&self) -> u32 {
+        match &self.core {
+            Core::Segment { .. } => LINE,
+            Core::Cuboid { .. } => CUBOID,
+            Core::Cylinder(_) => Cylinder::WHOLE,
+        }
+    }
+
     /// Smallest extent, m: what tolerances are measured by.
     #[inline]
     pub(crate) fn scale(&self) -> f64 {
@@ -78,23 +108,16 @@ impl Convex {
         }
     }
 
-    /// Axes along which the core ends in flat faces: the first so many of x, y, z, or z alone.
+    /// See [`Core::face_axes`].
     #[inline]
     pub(crate) fn face_axes(&self) -> &'static [usize] {
-        match &self.core {
-            Core::Segment { .. } => &[],
-            Core::Cuboid { .. } => &[0, 1, 2],
-            Core::Cylinder(_) => &[2],
-        }
+        self.core.face_axes()
     }
 
-    /// Axes along which straight edges (or lines of a curved side) run.
+    /// See [`Core::edge_axes`].
     #[inline]
     pub(crate) fn edge_axes(&self) -> &'static [usize] {
-        match &self.core {
-            Core::Cuboid { .. } => &[0, 1, 2],
-            Core::Segment { .. } | Core::Cylinder(_) => &[2],
-        }
+        self.core.edge_axes()
     }
 
     /// Whether the core touches others with single points or curves, whose normals are no axis of either.

@@ -5,10 +5,11 @@
 //! that they do not wander with round-off; once it leans by more than [`LEAN`] one of them is the deepest point of the
 //! rim, and the others follow at equal angles. In between they turn in proportion to the lean, so the gap is continuous
 //! (within 2e-6 radii at the half-way angles) and rolling on the rim is smooth. Rolling past the half-way angle between
-//! two points hands the deepest place from one number to its neighbour: there position tells who is who.
+//! two points hands the deepest place from one number to its neighbour: there position tells who is who. Where the rim
+//! crosses an edge of the other body the true circle counts, not the chord.
 
 use crate::convex::ALONG;
-use crate::patch::Patch;
+use crate::patch::{Disc, Patch};
 use spatial::Vec3;
 
 /// Sine of the lean from which one point is the deepest of the rim.
@@ -30,14 +31,17 @@ pub(crate) struct Cylinder {
 }
 
 // Numbers: 0..16 rim points (upper end first), 16 and 17 the ends of the side's line, 18..34 rim chords, 34 the side's
-// line, 35 the rim as a curve, 36 the whole.
+// line, 35 the rim as a curve, 36 the whole, 37..41 the rims where edges enter and leave.
 const LINE_END: u32 = 16;
 const CHORD: u32 = 18;
 const LINE: u32 = 34;
 const RIM: u32 = 35;
-const WHOLE: u32 = 36;
+const RIM_CROSSED: u32 = 37;
 
 impl Cylinder {
+    /// Number of the whole.
+    pub(crate) const WHOLE: u32 = 36;
+
     /// The point furthest along `d`; the end's centre where `d` is the axis.
     #[inline]
     pub(crate) fn support(&self, d: &Vec3) -> Vec3 {
@@ -58,7 +62,10 @@ impl Cylinder {
             return self.side(d, out);
         }
         let up = d.z > 0.0;
-        out.begin(Vec3::new(0.0, 0.0, 1f64.copysign(d.z)), WHOLE);
+        out.begin(Vec3::new(0.0, 0.0, 1f64.copysign(d.z)), Self::WHOLE);
+        let end = Vec3::new(0.0, 0.0, self.half.copysign(d.z));
+        let rim = RIM_CROSSED + if up { 0 } else { 2 };
+        out.disc = Some(Disc { centre: end, axes: [Vec3::x(), Vec3::y()], radius: self.radius, rim });
         let turn = rim_turn(d);
         for i in 0..ROUND {
             // Counter-clockwise about the outward normal: backwards on the lower end.
@@ -75,13 +82,13 @@ impl Cylinder {
         if d.z.abs() <= ALONG {
             return self.side(d, out);
         }
-        out.begin(*d, WHOLE);
+        out.begin(*d, Self::WHOLE);
         out.push(self.support(d), RIM, RIM);
     }
 
     fn side(&self, d: &Vec3, out: &mut Patch) {
         let radial = self.radius * self.radial(d).unwrap_or(Vec3::new(1.0, 0.0, 0.0));
-        out.begin(*d, WHOLE);
+        out.begin(*d, Self::WHOLE);
         out.push(radial - Vec3::new(0.0, 0.0, self.half), LINE_END, LINE);
         out.push(radial + Vec3::new(0.0, 0.0, self.half), LINE_END + 1, LINE);
     }

@@ -4,13 +4,14 @@
 //! stateless, so the points do not depend on what was asked before.
 
 use crate::analytic::{Raw, ball_ball, plane_ball, plane_cuboid, swapped};
+use crate::bed_points::{BedBuffer, is_bed};
 use crate::convex::{Convex, Core};
-use crate::manifold::{ManifoldBuffer, mix};
+use crate::faceted::FacetBuffer;
+use crate::manifold::{add_nearest, mix};
 use crate::primitive::{PrimitiveBuffer, convex_ball};
-use crate::reduce::reduce;
-use crate::scene::{ContactPoint, NONE, Part, Scene, Solid};
-use parry3d_f64::shape::{Ball, Shape};
-use spatial::{Frame, Mat3, Vec3};
+use crate::reduce::Reduction;
+use crate::scene::{ContactPoint, NONE, Part, Scene, Solid, Twin};
+use spatial::{Frame, Vec3};
 
 /// Distance, m, at which points are reported although nothing moves.
 const SKIN: f64 = 1e-4;
@@ -21,14 +22,12 @@ pub struct Detector {
     order: Vec<u32>,
     candidates: Vec<u32>,
     raw: Vec<Raw>,
-    nearest: Vec<f64>,
+    reduction: Reduction,
     primitives: PrimitiveBuffer,
-    manifolds: ManifoldBuffer,
+    facets: FacetBuffer,
+    beds: BedBuffer,
     narrow: u64,
 }
-
-/// What parry is asked for: all points, or the nearest.
-type Question = fn(&mut ManifoldBuffer, (&dyn Shape, &Frame), (&dyn Shape, &Frame), f64, &mut Vec<Raw>);
 
 /// A box in W axes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,9 +51,10 @@ impl Detector {
             order: (0..n as u32).collect(),
             candidates: Vec::with_capacity(scene.pairs().len()),
             raw: Vec::with_capacity(64),
-            nearest: Vec::new(),
+            reduction: Reduction::default(),
             primitives: PrimitiveBuffer::default(),
-            manifolds: ManifoldBuffer::default(),
+            facets: FacetBuffer::default(),
+            beds: BedBuffer::default(),
             narrow: 0,
         }
     }
@@ -79,17 +79,30 @@ impl Detector {
             let margin = reach[body_a] + reach[body_b] + SKIN;
             self.narrow += 1;
             self.find(&scene.parts[a], &poses[body_a], &scene.parts[b], &poses[body_b], margin);
-            reduce(&mut self.raw, &mut self.nearest);
             self.raw.sort_unstable_by_key(|p| p.feature);
-            out.extend(self.raw.iter().map(|p| ContactPoint {
-                pair,
-                feature: p.feature,
-                point_a_w: p.point_a,
-                point_b_w: p.point_a + p.gap * p.normal,
-                normal_w: p.normal,
-                gap: p.gap,
-            }));
+            self.reduction.reduce(&mut self.raw);
+            let reduction = &self.reduction;
+            out.extend(self.raw.iter().enumerate().map(|(i, p)| p.in_pair(pair, reduction.weight_of(i))));
+            let own = (&scene.parts[a][..], &poses[body_a]);
+            self.add_beds(own, (&scene.parts[b], &poses[body_b]), (pair, margin), out);
         }
+    }
+
+    /// Adds the points of beds to those of a pair, in the order of features.
+    fn add_beds(
+        &mut self,
+        a: (&[Part], &Frame),
+        b: (&[Part], &Frame),
+        (pair, margin): (u32, f64),
+        out: &mut Vec<ContactPoint>,
+    ) {
+        self.beds.find(a, b, margin);
+        if self.beds.found.is_empty() {
+            return;
+        }
+        let start = out.len() - self.raw.len();
+        out.extend(self.beds.found.iter().map(|(p, weight)| p.in_pair(pair, *weight)));
+        out[start..].sort_unstable_by_key(|p| p.feature);
     }
 
     fn update_boxes(&mut self, scene: &Scene, poses: &[Frame], reach: &[f64]) {
@@ -120,12 +133,14 @@ impl Detector {
                 if other.low.x > own.high.x {
                     break;
                 }
-                let apart = own.low.y > other.high.y
-                    || other.low.y > own.high.y
-                    || own.low.z > other.high.z
-                    || other.low.z > own.high.z;
+                // Said this way round, a pose that is not a number touches nothing.
+                let near = own.low.x <= other.high.x
+                    && own.low.y <= other.high.y
+                    && other.low.y <= own.high.y
+                    && own.low.z <= other.high.z
+                    && other.low.z <= own.high.z;
                 let pair = scene.pair_of[(i.min(j) as usize) * n + i.max(j) as usize];
-                if !apart && pair != NONE {
+                if near && pair != NONE {
                     self.candidates.push(pair);
                 }
             }
@@ -138,6 +153,9 @@ impl Detector {
         for (i, a) in parts_a.iter().enumerate() {
             let frame_a = pose_a * &a.frame_bp;
             for (j, b) in parts_b.iter().enumerate() {
+                if is_bed(a) || is_bed(b) {
+                    continue;
+                }
                 let frame_b = pose_b * &b.frame_bp;
                 let start = self.raw.len();
                 self.find_parts((a, &frame_a), (b, &frame_b), margin);
@@ -163,11 +181,15 @@ impl Detector {
             }
             (Solid::Primitive(pa, _), Solid::Primitive(pb, _)) => {
                 if !self.primitives.add_points((pa, frame_a), (pb, frame_b), margin, &mut self.raw) {
-                    self.ask_parry((a, frame_a), (b, frame_b), margin, ManifoldBuffer::add_nearest);
+                    self.ask_parry((a, frame_a), (b, frame_b), margin);
                 }
                 return;
             }
-            _ => return self.ask_parry((a, frame_a), (b, frame_b), margin, ManifoldBuffer::add_points),
+            // Two half-spaces never touch; beds have a way of their own.
+            (Solid::HalfSpace(_), Solid::HalfSpace(_)) | (Solid::Bed(_), _) | (_, Solid::Bed(_)) => return,
+            (Solid::Other(..), _) | (_, Solid::Other(..)) => {
+                return self.facets.add_points((a, frame_a), (b, frame_b), margin, &mut self.raw);
+            }
         };
         if one.gap < margin {
             self.raw.push(one);
@@ -181,29 +203,18 @@ impl Detector {
         }
     }
 
-    fn ask_parry(
-        &mut self,
-        (a, frame_a): (&Part, &Frame),
-        (b, frame_b): (&Part, &Frame),
-        margin: f64,
-        question: Question,
-    ) {
-        let (ball_a, ball_b) = (ball_of(&a.solid), ball_of(&b.solid));
-        let (shape_a, turn_a) = twin_of(&a.solid, &ball_a);
-        let (shape_b, turn_b) = twin_of(&b.solid, &ball_b);
-        let turned = |frame: &Frame, turn: &Mat3| Frame { rot: frame.rot * turn, pos: frame.pos };
-        let (frame_a, frame_b) = (turned(frame_a, &turn_a), turned(frame_b, &turn_b));
-        question(&mut self.manifolds, (shape_a, &frame_a), (shape_b, &frame_b), margin, &mut self.raw);
+    /// The nearest or deepest point of two primitives, where axes do not say.
+    fn ask_parry(&mut self, (a, frame_a): (&Part, &Frame), (b, frame_b): (&Part, &Frame), margin: f64) {
+        let (Some(twin_a), Some(twin_b)) = (twin_of(&a.solid), twin_of(&b.solid)) else { return };
+        let turned = |frame: &Frame, twin: &Twin| Frame { rot: frame.rot * twin.turn, pos: frame.pos };
+        let (frame_a, frame_b) = (turned(frame_a, twin_a), turned(frame_b, twin_b));
+        add_nearest((&*twin_a.shape, &frame_a), (&*twin_b.shape, &frame_b), margin, &mut self.raw);
     }
 }
 
-fn ball_of(solid: &Solid) -> Ball {
-    Ball::new(if let Solid::Ball(radius) = solid { *radius } else { 0.0 })
-}
-
-fn twin_of<'a>(solid: &'a Solid, ball: &'a Ball) -> (&'a dyn Shape, Mat3) {
+fn twin_of(solid: &Solid) -> Option<&Twin> {
     match solid {
-        Solid::Ball(_) => (ball, Mat3::identity()),
-        Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Other(twin) => (&*twin.shape, twin.turn),
+        Solid::Ball(_) | Solid::Bed(_) => None,
+        Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Other(twin, _) => Some(twin),
     }
 }

@@ -52,11 +52,32 @@ pub enum ContactError {
         /// How many there are.
         vertices: usize,
     },
+    /// A mesh that has no inside cannot be decomposed.
+    #[error(
+        "the mesh of {triangles} triangles {what}; a decomposition needs a closed one: close it, or use it as a surface"
+    )]
+    OpenMesh {
+        /// How many triangles it has.
+        triangles: usize,
+        /// What is wrong with it.
+        what: &'static str,
+    },
     /// A compound without parts.
     #[error("collider \"{collider}\": a compound needs at least one part")]
     EmptyCompound {
         /// Name of the collider.
         collider: String,
+    },
+    /// A bed without samples, or with one that has no area, direction or place.
+    #[error(
+        "collider \"{collider}\": its bed has {fault}; a bed needs samples with finite positions, unit normals and \
+         positive areas (m²), and a positive reference area"
+    )]
+    Bed {
+        /// Name of the collider.
+        collider: String,
+        /// What is wrong.
+        fault: String,
     },
     /// A pair names a collider that does not exist.
     #[error("contact pair {pair} names collider {index}, but there are {colliders} colliders")]

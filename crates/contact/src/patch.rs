@@ -13,6 +13,19 @@ pub(crate) struct Corner {
     pub(crate) edge: u32,
 }
 
+/// The disc that a many-cornered patch stands for: the end of a cylinder.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Disc {
+    /// Its centre, m.
+    pub(crate) centre: Vec3,
+    /// Body-fixed axes in its plane.
+    pub(crate) axes: [Vec3; 2],
+    /// Radius, m.
+    pub(crate) radius: f64,
+    /// Number of the rim where an edge enters it; where one leaves it, one more.
+    pub(crate) rim: u32,
+}
+
 /// One corner: a vertex; two: an edge; more: a face, counter-clockwise about its outward normal.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Patch {
@@ -20,6 +33,8 @@ pub(crate) struct Patch {
     pub(crate) corners: Vec<Corner>,
     /// Outward unit normal of a face.
     pub(crate) normal: Vec3,
+    /// The disc that the corners lie on, if it is one.
+    pub(crate) disc: Option<Disc>,
     /// Number of the face or of the whole shape, for points that are vertices of the other body.
     pub(crate) whole: u32,
 }
@@ -31,6 +46,7 @@ impl Patch {
         self.corners.clear();
         self.normal = normal;
         self.whole = whole;
+        self.disc = None;
     }
 
     /// Appends a corner.
@@ -46,6 +62,10 @@ impl Patch {
             c.p = frame.point(&c.p);
         }
         self.normal = frame.rot * self.normal;
+        if let Some(disc) = &mut self.disc {
+            disc.centre = frame.point(&disc.centre);
+            disc.axes = disc.axes.map(|axis| frame.rot * axis);
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::convex::{Convex, Core};
 use crate::cylinder::Cylinder;
+use crate::faceted::Faceted;
 use crate::{Collider, ContactError, Shape};
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::shape::SharedShape;
@@ -22,6 +23,8 @@ pub struct ContactPoint {
     pub normal_w: Vec3,
     /// Distance along the normal, m; negative: penetration.
     pub gap: f64,
+    /// Share of the pair's law (stiffness, damping, adhesion) that acts here: 1, but for the samples of a bed.
+    pub weight: f64,
 }
 
 /// A convex piece, or a surface, as the detector asks it.
@@ -30,7 +33,8 @@ pub(crate) enum Solid {
     Ball(f64),
     Primitive(Convex, Twin),
     HalfSpace(Twin),
-    Other(Twin),
+    Other(Twin, Faceted),
+    Bed(crate::Bed),
 }
 
 /// The same piece as parry knows it, and its turn within the piece's frame (parry's cylinder stands along y).
@@ -110,6 +114,11 @@ impl Scene {
         &self.pairs
     }
 
+    /// Whether one of a pair's colliders has a bed, whose points are known by their samples alone.
+    pub fn has_bed(&self, pair: usize) -> bool {
+        self.pairs[pair].iter().any(|&c| self.parts[c].iter().any(crate::bed_points::is_bed))
+    }
+
     /// The colliders.
     pub fn colliders(&self) -> &[Collider] {
         &self.colliders
@@ -147,18 +156,19 @@ fn solid_of(collider: &Collider, shape: &Shape) -> Result<Solid, ContactError> {
         Shape::ConvexHull { vertices } => {
             let points: Vec<Vector> = vertices.iter().map(to_parry).collect();
             let hull = SharedShape::convex_hull(&points).filter(|h| h.mass_properties(1.0).mass() > 0.0);
-            Solid::Other(Twin::new(hull.ok_or_else(|| ContactError::DegenerateHull {
-                collider: collider.name.clone(),
-                points: vertices.len(),
-            })?))
+            let known = hull.and_then(|hull| Some(Solid::Other(Twin::new(hull.clone()), Faceted::hull(&hull)?)));
+            let (collider, points) = (collider.name.clone(), vertices.len());
+            known.ok_or(ContactError::DegenerateHull { collider, points })?
         }
         Shape::TriMesh { vertices, triangles } => {
-            let mesh = SharedShape::trimesh(vertices.iter().map(to_parry).collect(), triangles.clone());
-            Solid::Other(Twin::new(mesh.map_err(|_| ContactError::DegenerateMesh {
-                collider: collider.name.clone(),
-                triangles: triangles.len(),
-            })?))
+            let known = Faceted::mesh(vertices, triangles).and_then(|(points, corners, mesh)| {
+                let twin = SharedShape::trimesh(points.iter().map(to_parry).collect(), corners).ok()?;
+                Some(Solid::Other(Twin::new(twin), mesh))
+            });
+            let (collider, triangles) = (collider.name.clone(), triangles.len());
+            known.ok_or(ContactError::DegenerateMesh { collider, triangles })?
         }
+        Shape::Bed(bed) => Solid::Bed(bed.clone()),
         // Its children are pieces of their own; none is left.
         Shape::Compound(_) => Solid::Ball(0.0),
     })
@@ -169,7 +179,11 @@ fn bounds(solid: &Solid) -> (Vec3, Vec3) {
         Solid::Ball(radius) => (Vec3::repeat(*radius), Vec3::zeros()),
         Solid::Primitive(convex, _) => (convex.half_extents(), Vec3::zeros()),
         Solid::HalfSpace(_) => (Vec3::repeat(f64::INFINITY), Vec3::zeros()),
-        Solid::Other(twin) => {
+        Solid::Bed(bed) => {
+            let (centre, half) = bed.bounds();
+            (half, centre)
+        }
+        Solid::Other(twin, _) => {
             let aabb = twin.shape.compute_local_aabb();
             (from_parry(aabb.half_extents()), from_parry(aabb.center()))
         }

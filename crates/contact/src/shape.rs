@@ -1,6 +1,6 @@
 //! Shapes as a file or a builder describes them, and their checks.
 
-use crate::ContactError;
+use crate::{Bed, ContactError};
 use spatial::{Pose, Vec3};
 
 /// A collision shape in its own frame S; lengths in m.
@@ -44,6 +44,8 @@ pub enum Shape {
         /// Corners of each triangle, counter-clockwise seen from outside (turned if a closed mesh is inside out).
         triangles: Vec<[u32; 3]>,
     },
+    /// Samples of a face, each a contact point of its own with a share of the pair's law.
+    Bed(Bed),
     /// Several shapes, each with its pose in S.
     Compound(Vec<(Pose, Shape)>),
 }
@@ -90,6 +92,10 @@ impl Collider {
                 self.check_vertices(vertices)?;
                 self.check_triangles(vertices, triangles)
             }
+            Shape::Bed(bed) => match bed.find_fault() {
+                Some(fault) => Err(ContactError::Bed { collider: self.name.clone(), fault }),
+                None => Ok(()),
+            },
             Shape::Compound(parts) if parts.is_empty() => {
                 Err(ContactError::EmptyCompound { collider: self.name.clone() })
             }

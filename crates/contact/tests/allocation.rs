@@ -39,3 +39,41 @@ fn detecting_primitives_again_allocates_nothing() {
     assert_eq!(allocation_counter::measure(run).count_total, 0);
     assert!(!points.is_empty());
 }
+
+/// An octahedron of 0.12 m.
+fn octahedron() -> Vec<Vec3> {
+    (0..6).map(|i| Vec3::ith(i / 2, if i % 2 == 0 { 0.12 } else { -0.12 })).collect()
+}
+
+#[test]
+fn detecting_hulls_and_meshes_again_allocates_nothing() {
+    let faces = vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    let shapes = [
+        Shape::ConvexHull { vertices: octahedron() },
+        Shape::TriMesh { vertices: octahedron(), triangles: faces },
+        Shape::Cuboid { half_extents: Vec3::new(0.1, 0.2, 0.1) },
+        Shape::Cylinder { radius: 0.1, half_length: 0.1 },
+        Shape::HalfSpace,
+    ];
+    for (a, b) in [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (0, 3), (1, 3), (0, 4), (1, 4)] {
+        let collider = |body: usize, shape: &Shape| Collider {
+            name: body.to_string(),
+            body,
+            pose_bs: Pose::identity(),
+            shape: shape.clone(),
+        };
+        let scene = Scene::new(vec![collider(0, &shapes[a]), collider(1, &shapes[b])], vec![[0, 1]]).unwrap();
+        let (mut detector, mut points) = (Detector::new(&scene), Vec::new());
+        let frame = |t: f64| Frame {
+            rot: spatial::rotation_about(&Vec3::new(0.6, 0.0, 0.8), t),
+            pos: Vec3::new(0.15 * t.cos(), 0.15 * t.sin(), 0.05),
+        };
+        let mut run = || {
+            (0..400).for_each(|k| {
+                detector.detect(&scene, &[Frame::identity(), frame(0.02 * f64::from(k))], &[0.01; 2], &mut points);
+            })
+        };
+        run();
+        assert_eq!(allocation_counter::measure(run).count_total, 0, "shapes {a} and {b}");
+    }
+}

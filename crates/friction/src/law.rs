@@ -100,6 +100,20 @@ impl Friction {
         }
     }
 
+    /// The law of a point that carries the share `w` of it: stiffness, damping and viscous term; levels stay, since the
+    /// normal force that they multiply has its share already.
+    pub fn weighted(&self, w: f64) -> Self {
+        match *self {
+            Self::Bristle(f) => {
+                Bristle { stiffness: w * f.stiffness, damping: w * f.damping, viscous: w * f.viscous, ..f }.into()
+            }
+            Self::Coulomb(f) => RegularisedCoulomb { viscous: w * f.viscous, ..f }.into(),
+            Self::LuGre(f) => {
+                LuGre { stiffness: w * f.stiffness, damping: w * f.damping, viscous: w * f.viscous, ..f }.into()
+            }
+        }
+    }
+
     /// Energy stored in a deflection, J.
     pub fn calc_stored_energy(&self, s: &Vector3<f64>) -> f64 {
         0.5 * self.spring().0 * s.norm_squared()

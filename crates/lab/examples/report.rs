@@ -19,7 +19,10 @@ fn main() -> Result<(), LabError> {
         eprintln!("{} ({:.1} s)", experiment.name, started.elapsed().as_secs_f64());
     }
     let folder = record::OutputFolder::create(&folder)?;
-    record::write_file(&folder.file("report.md"), report::markdown(&answers).as_bytes())?;
+    record::write_file(
+        &folder.file("report.md"),
+        (report::markdown(&answers) + &report::notes_markdown(&answers)).as_bytes(),
+    )?;
     record::write_file(&folder.file("report.html"), report::html(&answers).as_bytes())?;
     folder.finish(&report::summary(&answers))?;
     println!("{}\n{}", report::markdown(&answers), report::count(&answers));

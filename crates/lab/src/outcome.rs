@@ -35,7 +35,7 @@ pub struct Outcome {
     pub charts: Vec<Chart>,
     /// One run to look at: its log and what its scene looks like.
     pub run: Option<(record::Log, record::Scene)>,
-    /// What a reader should know besides: limits, sources, what was left out.
+    /// What a reader should know besides: limits, sources, what was left out; a Markdown table where it begins with `|`.
     pub notes: Vec<String>,
 }
 

@@ -17,7 +17,9 @@ pub fn shown(x: f64) -> String {
         return "0".to_owned();
     }
     if !(1e-3..1e6).contains(&x.abs()) {
-        return format!("{x:.3e}");
+        let text = format!("{x:.3e}");
+        let (mantissa, power) = text.split_once('e').unwrap_or((&text, "0"));
+        return format!("{}e{power}", mantissa.trim_end_matches('0').trim_end_matches('.'));
     }
     let digits = (5 - x.abs().log10().floor() as i32).clamp(0, 8) as usize;
     let text = format!("{x:.digits$}");
@@ -160,11 +162,35 @@ fn add_section(page: &mut String, (experiment, outcome): &Answer) {
     }
     page.push_str("</table>\n");
     for note in &outcome.notes {
-        let _ = writeln!(page, "<p>{}</p>", escape(note));
+        match note.starts_with('|') {
+            true => add_table(page, note),
+            false => drop(writeln!(page, "<p>{}</p>", escape(note))),
+        }
     }
     for chart in &outcome.charts {
         page.push_str(&chart_svg(chart));
     }
+}
+
+/// A Markdown table: its second line is the rule.
+fn add_table(page: &mut String, table: &str) {
+    page.push_str("<table>");
+    for (i, line) in table.lines().enumerate().filter(|(i, _)| *i != 1) {
+        let cell = if i == 0 { "th" } else { "td" };
+        let cells = line.trim().trim_matches('|').split('|');
+        let row: String = cells.map(|c| format!("<{cell}>{}</{cell}>", escape(c.trim()))).collect();
+        let _ = writeln!(page, "<tr>{row}</tr>");
+    }
+    page.push_str("</table>\n");
+}
+
+/// The notes of all experiments in Markdown, each under its experiment's name.
+pub fn notes_markdown(answers: &[Answer]) -> String {
+    let mut text = String::new();
+    for (experiment, outcome) in answers.iter().filter(|(_, o)| !o.notes.is_empty()) {
+        let _ = writeln!(text, "\n## {}\n\n{}", experiment.name, outcome.notes.join("\n\n"));
+    }
+    text
 }
 
 #[cfg(test)]
@@ -182,21 +208,24 @@ mod tests {
             Figure::at_most("bad", 2e-9, 1e-12, "m/s"),
             Figure::shown("beside", 3.0, f64::NAN, "1"),
         ];
-        vec![(experiment, Outcome { figures, ..Outcome::default() })]
+        let notes = vec!["| x | y |\n| --- | --- |\n| 1 | < 2 |\n".to_owned()];
+        vec![(experiment, Outcome { figures, notes, ..Outcome::default() })]
     }
 
     #[test]
     fn the_table_says_what_holds_and_what_does_not() {
         let text = markdown(&answers());
         assert!(text.contains("| a | good | 1.0001 N | 1 | ± 0.1 % | yes |"), "{text}");
-        assert!(text.contains("|  | bad | 2.000e-9 m/s | ≤ 1.000e-12 |  | NO |"), "{text}");
+        assert!(text.contains("|  | bad | 2e-9 m/s | ≤ 1.000e-12 |  | NO |"), "{text}");
         assert!(text.contains("|  | beside | 3 | – | shown |  |"), "{text}");
         assert_eq!(count(&answers()), "1 of 2 figures hold, 1 experiments.");
     }
 
     #[test]
     fn a_page_escapes_what_it_quotes_and_json_has_null_for_nan() {
-        assert!(html(&answers()).contains("b &lt; c?"));
+        let page = html(&answers());
+        assert!(page.contains("b &lt; c?") && page.contains("<tr><td>1</td><td>&lt; 2</td></tr>"), "{page}");
+        assert!(!page.contains("---"));
         let json = figures_json(&answers());
         assert!(json[0]["figures"][2]["expected"].is_null() && json[0]["holds"] == false);
     }

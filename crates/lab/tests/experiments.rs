@@ -38,6 +38,13 @@ experiments! {
     spinning_disc: "spinning-disc",
     oscillating_load: "oscillating-load",
     anisotropy: "anisotropy",
+    bouncing_sphere: "bouncing-sphere",
+    rolling_ball: "rolling-ball",
+    wedging_peg: "wedging-peg",
+    pinch_hold: "pinch-hold",
+    force_balance: "force-balance",
+    smooth_sliding: "smooth-sliding",
+    integrators: "integrators",
 }
 
 #[test]

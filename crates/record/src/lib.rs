@@ -17,6 +17,7 @@ mod csv_file;
 mod error;
 mod folder;
 mod log;
+mod mechanisms;
 mod mesh;
 mod observe;
 mod parquet_file;

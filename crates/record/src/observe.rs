@@ -7,6 +7,7 @@
 //! | `actuator.<name>.command` | position, or effort |
 //! | `contact.<a>.<b>.normal_force`, `.friction_force`, `.points`, `.sliding` by pair of vehicles | N, 1 |
 //! | `momentum.*`, `energy.*` of all vehicles together | |
+//! | `mechanism.*` | see `mechanisms` |
 
 use crate::{ChannelSpec, ContactSample, Log, Meta, Plot, RecordError, Sample};
 use multibody::JointKind;
@@ -128,6 +129,7 @@ impl<'a> Recorder<'a> {
         write_joints(world, &mut values);
         write_contacts(world, &self.vehicle_pairs, &mut values);
         write_accounts(world, self.audit.as_ref(), &mut values);
+        crate::mechanisms::write(world, &mut values);
         values.extend(self.probes.iter().map(|p| (p.read)(world)));
         let Scratch { kept, poses, contacts, .. } = &mut self.scratch;
         kept.clear();
@@ -221,6 +223,7 @@ fn standard_channels(model: &Model, pairs: &[(Option<usize>, Option<usize>)]) ->
     for quantity in ["actuator_work", "contact_work", "joint_loss"] {
         add(format!("energy.{quantity}"), "J", Plot::Energy, "sum since the start");
     }
+    specs.extend(crate::mechanisms::channels(model));
     specs
 }
 

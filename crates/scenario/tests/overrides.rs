@@ -137,7 +137,7 @@ fn what_leads_nowhere_is_refused_with_the_nearest_spelling() {
                 "at `vehicle.target.pose.rpy_deg`, the file says nothing; set all of it, `vehicle.target.pose.rpy_deg=…`",
             ],
         ),
-        ("contact[0].friction.mu=0.1", &["`contact[0].friction` lacks `law`: one of bristle, none"]),
+        ("contact[0].friction.mu=0.1", &["`contact[0].friction` lacks `law`: one of bristle, regularised-coulomb"]),
     ] {
         let said = with(&[set]).expect_err(set);
         for fragment in fragments {

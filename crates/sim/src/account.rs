@@ -8,7 +8,7 @@
 //! A single link does not move in that frame: its own momentum about W's origin is the scale then.
 
 use crate::model::Base;
-use crate::world::World;
+use crate::world::{TouchReport, World};
 use multibody::calc_kinetic_energy;
 use spatial::{Vec3, Wrench};
 
@@ -113,6 +113,8 @@ pub struct Energy {
     pub potential: f64,
     /// Stored in contact: normal springs and bristles.
     pub elastic: f64,
+    /// Stored in mechanisms.
+    pub mechanism: f64,
 }
 
 impl Energy {
@@ -124,13 +126,14 @@ impl Energy {
         if !model.environment.is_still() {
             for_each_link(world, |m, x, _| potential += model.environment.calc_potential(world.state().time, &x, m));
         }
-        let elastic = world.touches().map(|t| calc_elastic(world, t.pair, t.gap, t.deflection)).sum();
-        Self { kinetic, potential, elastic }
+        let elastic = world.touches().map(|t| calc_elastic(world, &t)).sum();
+        let mechanism = world.mechanisms().map(|m| m.stored).sum();
+        Self { kinetic, potential, elastic, mechanism }
     }
 }
 
-fn calc_elastic(world: &World, pair: usize, gap: f64, deflection: f64) -> f64 {
-    let law = &world.model().laws[pair];
-    let bristle = law.friction.map_or(0.0, |f| 0.5 * f.spring().0 * deflection * deflection);
-    law.normal.calc_stored_energy(gap) + bristle
+fn calc_elastic(world: &World, touch: &TouchReport) -> f64 {
+    let law = world.model().laws[touch.pair].weighted(touch.weight);
+    let bristle = law.friction.map_or(0.0, |f| 0.5 * f.spring().0 * touch.deflection * touch.deflection);
+    law.normal.calc_stored_energy(touch.gap) + bristle
 }

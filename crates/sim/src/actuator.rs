@@ -55,6 +55,11 @@ pub enum ActuatorKind {
         /// N.
         max_force: f64,
     },
+    /// Opens a latch while the command's `effort` is above ½.
+    LatchRelease {
+        /// Index into the model's mechanisms.
+        mechanism: usize,
+    },
 }
 
 /// What a controller asks of one actuator.
@@ -211,6 +216,6 @@ fn drive(kind: &ActuatorKind, command: &Command, at: &CoordinatePoint, q: f64, v
             }
             (asked, stiffness * at.beta + damping * at.theta)
         }
-        ActuatorKind::Thruster { .. } => (0.0, 0.0),
+        ActuatorKind::Thruster { .. } | ActuatorKind::LatchRelease { .. } => (0.0, 0.0),
     }
 }

@@ -37,12 +37,16 @@ pub(crate) struct Touch {
     /// From A to B.
     pub normal: Vec3,
     pub gap: f64,
+    /// Share of the pair's law that acts here.
+    pub weight: f64,
     /// Deflection at the start, carried into the present plane.
     pub s: Vec3,
     /// How rested the point was at the start.
     pub rest: f64,
     /// Direction along which the friction levels are meant; zero where there is none.
     pub grain: Vec3,
+    /// Angular deflection of a pair with a pivot, rad.
+    pub turn: Vec3,
     /// Velocity of B's point relative to A's at the start.
     pub u: Vec3,
     /// What the bodies' turning adds to it over the step, without any gain: h (ω_B − ω_A) × ẋ_C. Gains are spatial, those
@@ -69,6 +73,10 @@ pub(crate) struct Outcome {
     pub law: Vec3,
     /// Normal part of it, N.
     pub normal_force: f64,
+    /// Normal force that bounds the friction, now and one pass earlier, N (see [`Touch::calc_pressing`]).
+    pub pressing: [f64; 2],
+    /// Passes of this step so far.
+    pub passes: u8,
     /// Deflection, rest and regime by the law.
     pub s: Vec3,
     pub rest: f64,
@@ -83,6 +91,9 @@ pub(crate) struct Outcome {
     pub force: Vec3,
 }
 
+/// Steepest secant that [`Touch::calc_pressing`] believes.
+const SHORTEST_WAY: f64 = -9.0;
+
 impl Touch {
     /// Evaluates the law at the predicted relative velocity `u_new`, and draws the line for the next solve.
     ///
@@ -91,6 +102,7 @@ impl Touch {
     /// the neighbourhood of rest; where that did not settle it, the secant through the unloaded bristle: friction is
     /// the slope of a convex potential, which the secant's parabola bounds from above, so that every pass descends.
     pub fn eval(&mut self, law: &PairLaw, u_new: &Vec3, h: f64) -> Outcome {
+        let law = &*law.weighted(self.weight);
         let (n, at) = (self.normal, self.place);
         let rate = (1.0 - at.theta) * self.u + at.theta * u_new;
         let (u_n, rate_n) = (n.dot(u_new), n.dot(&rate));
@@ -99,6 +111,8 @@ impl Touch {
         let mut out = Outcome {
             law: normal.force * n,
             normal_force: normal.force,
+            pressing: [self.calc_pressing(normal.force), self.out.pressing[0]],
+            passes: self.out.passes + 1,
             g: -h * (at.beta * normal.d_gap + at.theta * normal.d_rate) * nn,
             ..Outcome::default()
         };
@@ -110,7 +124,7 @@ impl Touch {
                 s_trial,
                 slip,
                 elapsed: at.elapsed,
-                normal_force: normal.force + law.normal.adhesion,
+                normal_force: out.pressing[0] + law.normal.adhesion,
                 rest: self.rest,
                 grain: self.grain,
             });
@@ -127,6 +141,21 @@ impl Touch {
         out.line = out.law + excess + out.g * (u_new - self.u - self.carried) / h;
         out.force = out.law;
         out
+    }
+
+    /// Normal force that bounds the friction in the next line, when the last one led to `normal`.
+    ///
+    /// Friction is held at its bound while a pass solves, so the passes iterate N ← F(N). In a wedge friction lifts the body
+    /// off the faces that cause it, F falls steeper than −1, and the iteration would jump between pressing and not touching
+    /// for ever: a ball fell through a corner of three planes. From the third pass on the secant of F says how far to go; it
+    /// shortens the way and never lengthens it.
+    fn calc_pressing(&self, normal: f64) -> f64 {
+        let [last, before] = self.out.pressing;
+        if self.out.passes < 2 || last == before {
+            return normal;
+        }
+        let slope = (normal - self.out.normal_force) / (last - before);
+        last + (normal - last) / (1.0 - slope.clamp(SHORTEST_WAY, 0.0))
     }
 
     /// −∂f/∂u' of the friction force, or what stands in for it where the slip force turned (see [`Self::eval`]).
@@ -213,9 +242,11 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
             rot_b: ws.frames[body_b].rot,
             normal: contact.normal_w,
             gap: contact.gap,
+            weight: contact.weight,
             s: Vec3::zeros(),
             rest: 0.0,
             grain: Vec3::zeros(),
+            turn: Vec3::zeros(),
             u,
             carried: Vec3::zeros(),
             place: Place::default(),
@@ -230,14 +261,15 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
             ws.touches[i].grain = grain.calc_direction(&ws.touches[i]);
         }
     }
-    remember(&state.bristles, &mut ws.touches, &Turned { from: &ws.frames_start, to: &ws.frames });
+    let turned = Turned { from: &ws.frames_start, to: &ws.frames };
+    remember(&model.scene, &state.bristles, &mut ws.touches, &turned);
 }
 
 /// Distance (m) within which a point inherits the bristle of a vanished neighbour of the same pair.
 const NEIGHBOUR: f64 = 2e-3;
 
 /// Hands every touch the bristle of its identity; where features say nothing, that of the nearest lost neighbour.
-fn remember(memories: &[ContactMemory], touches: &mut [Touch], turned: &Turned<'_>) {
+fn remember(scene: &contact::Scene, memories: &[ContactMemory], touches: &mut [Touch], turned: &Turned<'_>) {
     let mut known = 0;
     for touch in touches.iter_mut() {
         if let Some(at) = find_memory(memories, touch.pair, touch.feature) {
@@ -250,7 +282,8 @@ fn remember(memories: &[ContactMemory], touches: &mut [Touch], turned: &Turned<'
     }
     for memory in memories {
         let taken = |t: &Touch| (t.pair, t.feature) == (memory.pair, memory.feature);
-        if touches.iter().any(taken) {
+        // A bed's samples are known by their number, and there may be hundreds of them.
+        if scene.has_bed(memory.pair as usize) || touches.iter().any(taken) {
             continue;
         }
         let is_orphan = |t: &Touch| {
@@ -304,6 +337,9 @@ impl Touch {
         let bodies = (self.body_a, self.body_b);
         self.s = turned.deflection(bodies, &memory.s_w, &memory.normal_w, &self.normal);
         self.rest = memory.rest;
+        if memory.turn_w != Vec3::zeros() {
+            self.turn = turned.deflection(bodies, &memory.turn_w, &memory.normal_w, &self.normal);
+        }
     }
 
     /// What is kept of the point when the bodies have moved on from the place of detection to frames `a` and `b`: the
@@ -314,8 +350,13 @@ impl Touch {
         let normal_w = mean_of(&n_a, &n_b);
         let carried = mean_of(&carry(&s_a, &n_a, &normal_w), &carry(&s_b, &n_b, &normal_w));
         let s_w = carried + slipped - normal_w * normal_w.dot(slipped);
+        let mut turn_w = self.turn;
+        if turn_w != Vec3::zeros() {
+            let (t_a, t_b) = with(&turn_w);
+            turn_w = mean_of(&carry(&t_a, &n_a, &normal_w), &carry(&t_b, &n_b, &normal_w));
+        }
         let Self { pair, feature, local_b: point_b, .. } = *self;
-        ContactMemory { pair, feature, s_w, normal_w, rest: self.out.rest, point_b }
+        ContactMemory { pair, feature, s_w, normal_w, turn_w, rest: self.out.rest, point_b }
     }
 }
 
@@ -324,7 +365,7 @@ impl Touch {
 pub(crate) fn commit_bristles(model: &Model, state: &mut State, ws: &mut Workspace) {
     ws.memories.clear();
     for touch in &ws.touches {
-        if model.laws[touch.pair as usize].friction.is_none() || touch.out.normal_force <= 0.0 {
+        if !model.laws[touch.pair as usize].remembers() || touch.out.normal_force <= 0.0 {
             continue;
         }
         let (b0, b1) = (&ws.frames_start[touch.body_b], &ws.frames[touch.body_b]);
@@ -332,7 +373,12 @@ pub(crate) fn commit_bristles(model: &Model, state: &mut State, ws: &mut Workspa
         let memory = if touch.out.sticks {
             let now = b1.point(&touch.local_b) - a1.point(&touch.local_a);
             let start = b0.point(&touch.local_b) - a0.point(&touch.local_a);
-            touch.remembered(&touch.s, &(now - start), (a1, b1))
+            // Detected at the start, the two points coincide there; detected at mid-step they may not, and what parts them
+            // turns with the bodies: taken as it was, its normal part would enter the plane step by step.
+            let is_at_start = touch.rot_a == a0.rot && touch.rot_b == b0.rot;
+            let with = |from: &Frame, to: &Frame| to.rot * from.rot.tr_mul(&start);
+            let turned = if is_at_start { start } else { mean_of(&with(a0, a1), &with(b0, b1)) };
+            touch.remembered(&touch.s, &(now - turned), (a1, b1))
         } else {
             touch.remembered(&touch.out.s, &Vec3::zeros(), (a1, b1))
         };

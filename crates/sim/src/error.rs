@@ -23,6 +23,17 @@ pub enum ModelError {
     /// An actuator points at no single-coordinate joint.
     #[error("actuator \"{0}\" needs a revolute or prismatic joint that follows no other")]
     Actuator(String),
+    /// A release that belongs to no latch.
+    #[error("actuator \"{0}\" releases a mechanism that is no latch")]
+    LatchRelease(String),
+    /// A mechanism that cannot be.
+    #[error("mechanism \"{name}\": {fault}")]
+    Mechanism {
+        /// Its name.
+        name: String,
+        /// What is wrong with it.
+        fault: String,
+    },
     /// Contact geometry that cannot be.
     #[error(transparent)]
     Contact(#[from] contact::ContactError),

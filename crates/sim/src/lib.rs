@@ -29,12 +29,15 @@ mod actuator;
 mod contacts;
 mod environment;
 mod error;
+mod mechanism;
 mod model;
+mod pivots;
 mod rk4;
 mod run;
 mod solve;
 mod state;
 mod step;
+mod weight;
 mod workspace;
 mod world;
 
@@ -42,6 +45,10 @@ pub use account::{Energy, MomentumAudit};
 pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
 pub use environment::Environment;
 pub use error::{ModelError, StepError};
+pub use mechanism::{
+    Anchor, Bushing, Capture, Latch, Mechanism, MechanismKind, MechanismMemory, MechanismReport, MechanismStatus,
+    Overload, PullIn, Side, Strength, Strut, StrutSides, Weld,
+};
 pub use model::{Base, Grain, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, Vehicle, VehicleSpec};
 pub use run::{Controller, Flow, NoControl, Observer};
 pub use state::{Account, ContactMemory, State, Work};

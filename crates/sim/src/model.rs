@@ -6,10 +6,11 @@
 use crate::actuator::{Actuator, ActuatorKind, Coordinate};
 use crate::environment::Environment;
 use crate::error::ModelError;
+use crate::mechanism::{Mechanism, MechanismKind};
 use contact::{Collider, Normal, Scene};
-use friction::Friction;
+use friction::{Friction, Pivot};
 use multibody::{JointKind, Tree};
-use spatial::{Pose, Vec3};
+use spatial::{Frame, Pose, Vec3};
 
 /// How a vehicle's base moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,14 +70,21 @@ pub struct PairLaw {
     pub normal: Normal,
     /// In the tangent plane; `None` for a frictionless pair.
     pub friction: Option<Friction>,
+    /// Against spinning and rolling, lumped in every point; `None` where several points of a patch do it.
+    pub pivot: Option<Pivot>,
     /// Direction along which the friction levels are meant, for a law that differs across it.
     pub grain: Option<Grain>,
 }
 
 impl PairLaw {
-    /// Laws without a grain.
+    /// Laws of forces alone, without a grain.
     pub fn new(normal: Normal, friction: Option<Friction>) -> Self {
-        Self { normal, friction, grain: None }
+        Self { normal, friction, pivot: None, grain: None }
+    }
+
+    /// Whether its points have memory.
+    pub(crate) fn remembers(&self) -> bool {
+        self.friction.is_some() || self.pivot.is_some()
     }
 }
 
@@ -150,6 +158,8 @@ pub struct ModelSpec {
     pub shapes: Vec<ShapeSpec>,
     /// Pairs of shapes that may touch, with their laws.
     pub pairs: Vec<([usize; 2], PairLaw)>,
+    /// What joins bodies beside joints and contact.
+    pub mechanisms: Vec<Mechanism>,
     /// Actuators in the order of the commands.
     pub actuators: Vec<Actuator>,
     /// Gravity and tides.
@@ -186,6 +196,10 @@ pub struct Model {
     pub integrator: Integrator,
     /// Step, s.
     pub step: f64,
+    /// What joins bodies beside joints and contact.
+    pub mechanisms: Vec<Mechanism>,
+    /// Global bodies and the frames in them, of the two sides of each mechanism.
+    pub(crate) mechanism_sides: Vec<[(usize, Frame); 2]>,
     /// Bounding radius of each body's colliders about its origin, m; negative where it has none.
     pub(crate) collider_radius: Vec<f64>,
     pub(crate) one_sided_force: Vec3,
@@ -206,6 +220,7 @@ impl Model {
         let scene = Scene::new(colliders, pairs)?;
         let collider_radius = calc_collider_radius(&scene, owners.len() + 1);
         let coordinates = vehicles.iter().flat_map(coordinates_of).collect::<Vec<_>>();
+        let mechanism_sides = resolve_mechanisms(&spec.mechanisms, &vehicles, owners.len())?;
         let mut model = Self {
             vehicles,
             scene,
@@ -217,6 +232,8 @@ impl Model {
             environment: spec.environment,
             integrator: spec.integrator,
             step: spec.step,
+            mechanisms: spec.mechanisms,
+            mechanism_sides,
             collider_radius,
             one_sided_force: spec.one_sided_force,
         };
@@ -231,6 +248,11 @@ impl Model {
             {
                 let slot = self.coordinates.get_mut(coordinate).filter(|c| c.is_scalar);
                 slot.ok_or_else(|| ModelError::Actuator(actuator.name.clone()))?.actuators.push(i);
+            }
+            if let ActuatorKind::LatchRelease { mechanism } = actuator.kind {
+                let is_latch = |m: &Mechanism| matches!(m.kind, MechanismKind::Latch(_));
+                let found = self.mechanisms.get(mechanism).is_some_and(is_latch);
+                found.then_some(()).ok_or_else(|| ModelError::LatchRelease(actuator.name.clone()))?;
             }
         }
         Ok(())
@@ -316,6 +338,31 @@ fn check_mask(name: &str, base: Base) -> Result<(), ModelError> {
     Ok(())
 }
 
+/// Bodies and frames of the mechanisms' sides, each mechanism checked.
+fn resolve_mechanisms(
+    mechanisms: &[Mechanism],
+    vehicles: &[Vehicle],
+    world: usize,
+) -> Result<Vec<[(usize, Frame); 2]>, ModelError> {
+    let mut sides: Vec<[(usize, Frame); 2]> = Vec::with_capacity(mechanisms.len());
+    for (i, mechanism) in mechanisms.iter().enumerate() {
+        let refuse = |fault: &str| ModelError::Mechanism { name: mechanism.name.clone(), fault: fault.to_owned() };
+        if mechanisms[..i].iter().any(|m| m.name == mechanism.name) {
+            return Err(refuse("is defined twice; give each its own name"));
+        }
+        let [a, b] = [mechanism.side_a, mechanism.side_b].map(|s| s.resolve(vehicles, world));
+        let (Some(a), Some(b)) = (a, b) else { return Err(refuse("an anchor names no vehicle or link")) };
+        if a.0 == b.0 {
+            return Err(refuse("both anchors are on the same body, which it cannot move; put one on another body"));
+        }
+        if let Some(fault) = mechanism.kind.find_fault() {
+            return Err(refuse(&fault));
+        }
+        sides.push([a, b]);
+    }
+    Ok(sides)
+}
+
 fn qualified_name(vehicles: &[Vehicle], shape: &ShapeSpec) -> String {
     shape.vehicle.map_or_else(|| format!("world/{}", shape.name), |v| format!("{}/{}", vehicles[v].name, shape.name))
 }
@@ -350,6 +397,7 @@ fn calc_bounding_radius(shape: &contact::Shape) -> f64 {
         Shape::Cylinder { radius, half_length } => radius.hypot(*half_length),
         Shape::Capsule { radius, half_length } => radius + half_length,
         Shape::HalfSpace => 0.0,
+        Shape::Bed(bed) => bed.samples.iter().map(|s| s.point.norm()).fold(0.0, f64::max),
         Shape::ConvexHull { vertices } | Shape::TriMesh { vertices, .. } => farthest(vertices),
         Shape::Compound(parts) => {
             parts.iter().map(|(pose, s)| pose.translation.vector.norm() + calc_bounding_radius(s)).fold(0.0, f64::max)

@@ -3,17 +3,19 @@
 //!   y = (base position, rotation vector from the step's start, joint displacement, v, p, L, s)
 //!
 //! Every stage takes the base twist from its momentum, so every stage conserves, and so does the sum. Rotation vectors
-//! follow θ̇ = ω − ½ θ×ω + 1/12 θ×(θ×ω). Bristles are integrated in B's axes; points that touch down within a step get
+//! follow θ̇ = ω − ½ θ×ω + 1/12 θ×(θ×ω). Bristles are integrated in the plane of the step's start; points that touch down within a step get
 //! theirs at its end. Sliding bristles turn at |u|/s_max, which wants h < 2 s_max/|u|.
 
 use crate::actuator::CoordinatePoint;
 use crate::contacts::{Touch, Turned, find_memory, find_touches};
+use crate::mechanism;
 use crate::model::Model;
+use crate::pivots;
 use crate::solve;
 use crate::state::{Account, ContactMemory, State};
 use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
 use crate::workspace::Workspace;
-use friction::{Friction, Trial};
+use friction::{Friction, Trial, carry};
 use spatial::{Mat3, Twist, Vec3, Wrench, log_rotation, rotation_rate_of_vector};
 
 /// Scratch of the stages.
@@ -104,19 +106,23 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     ws.rk = rk;
     ws.update_positions(model, state);
     finish(model, state, ws);
+    pivots::commit(ws);
     carry_to_the_end(model, state, ws);
+    mechanism::commit(model, state, ws);
 }
 
 /// Every touching point gets a slot, in the order of touches; its deflection is cut to what the normal force holds.
 fn open_slots(model: &Model, ws: &Workspace, slots: &mut Vec<ContactMemory>) {
     slots.clear();
     for touch in &ws.touches {
-        let law = &model.laws[touch.pair as usize];
-        let Some(friction) = &law.friction else { continue };
+        let law = model.laws[touch.pair as usize].weighted(touch.weight);
+        if !law.remembers() {
+            continue;
+        }
         let compression = law.normal.eval(touch.gap, touch.normal.dot(&touch.u)).force + law.normal.adhesion;
-        let s_w = friction.eval_rate(&trial_of(touch, compression)).s;
-        let Touch { pair, feature, normal: normal_w, rest, local_b: point_b, .. } = *touch;
-        slots.push(ContactMemory { pair, feature, s_w, normal_w, rest, point_b });
+        let s_w = law.friction.map_or(Vec3::zeros(), |f| f.eval_rate(&trial_of(touch, compression)).s);
+        let Touch { pair, feature, normal: normal_w, turn: turn_w, rest, local_b: point_b, .. } = *touch;
+        slots.push(ContactMemory { pair, feature, s_w, normal_w, turn_w, rest, point_b });
     }
 }
 
@@ -135,6 +141,9 @@ fn carry_to_the_end(model: &Model, state: &mut State, ws: &Workspace) {
         memory.s_w = turned.deflection(bodies, &memory.s_w, &memory.normal_w, &normal);
         memory.normal_w = normal;
         let touch = ws.touches.iter().find(|t| (t.pair, t.feature) == (memory.pair, memory.feature));
+        if let Some(touch) = touch {
+            memory.turn_w = carry(&touch.turn, &touch.normal, &normal);
+        }
         if let (Some(touch), Some(Friction::Bristle(law))) = (touch, &model.laws[memory.pair as usize].friction) {
             let speed = (touch.u - touch.normal * touch.normal.dot(&touch.u)).norm();
             let rest = law.levels().calc_rest(memory.rest, speed, model.step);
@@ -175,6 +184,8 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     let slots = rk.slots.len();
     rk.rate.reset(model, slots);
     eval_contacts(model, ws, rk);
+    mechanism::eval_explicit(model, state, ws);
+    pivots::eval_explicit(model, ws, state.time - rk.start.time);
     eval_coordinates(model, state, ws, rk);
     calc_external(model, state, ws);
     calc_bias(model, state, ws, false);
@@ -210,7 +221,7 @@ fn eval_contacts(model: &Model, ws: &mut Workspace, rk: &mut Stages) {
     // Back from the present frames to those of the step's start.
     let back = Turned { from: &ws.frames, to: &ws.frames_start };
     for touch in &mut ws.touches {
-        let (law, n) = (&model.laws[touch.pair as usize], touch.normal);
+        let (law, n) = (model.laws[touch.pair as usize].weighted(touch.weight), touch.normal);
         let normal = law.normal.eval(touch.gap, n.dot(&touch.u));
         touch.out.law = normal.force * n;
         touch.out.normal_force = normal.force + law.normal.adhesion;

@@ -6,7 +6,10 @@
 //! −J_aᵀ S_ab J_b is extra, once per pair of bodies. Vehicles that touch form an island; each island is factored by
 //! itself (UᵀU, upper triangle, row-major: inner loops run along rows and keep one order of addition).
 
+use crate::contacts::Touch;
+use crate::mechanism::{self, Coupling};
 use crate::model::Model;
+use crate::pivots;
 use crate::workspace::Workspace;
 use multibody::{Kinematics, Tree};
 use spatial::{SpatialMatrix, Twist, Vec3, Wrench};
@@ -45,12 +48,13 @@ impl Islands {
     }
 
     /// Groups the vehicles that touch and numbers their freedoms.
-    pub fn regroup(&mut self, model: &Model, touches: &[crate::contacts::Touch]) {
+    pub fn regroup(&mut self, model: &Model, touches: &[Touch], couplings: &[Coupling]) {
         for (i, group) in self.group.iter_mut().enumerate() {
             *group = i;
         }
-        for touch in touches {
-            if let (Some(&(a, _)), Some(&(b, _))) = (model.owners.get(touch.body_a), model.owners.get(touch.body_b)) {
+        let touching = touches.iter().map(|t| [t.body_a, t.body_b]);
+        for [body_a, body_b] in touching.chain(couplings.iter().map(|c| c.bodies)) {
+            if let (Some(&(a, _)), Some(&(b, _))) = (model.owners.get(body_a), model.owners.get(body_b)) {
                 let (low, high) = (self.group[a].min(self.group[b]), self.group[a].max(self.group[b]));
                 self.group.iter_mut().filter(|g| **g == high).for_each(|g| *g = low);
             }
@@ -85,11 +89,23 @@ pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
             }
         }
     }
-    ws.islands.regroup(model, &ws.touches);
+    mechanism::add_stiffness(model, ws, h);
+    pivots::add_stiffness(model, ws, h);
+    ws.islands.regroup(model, &ws.touches, &ws.couplings);
     for i in 0..model.vehicles.len() {
         add_vehicle(model, ws, i, h);
     }
     add_cross_terms(model, ws);
+    for k in 0..ws.couplings.len() {
+        if let Some(([a, b], coupling)) = mechanism::calc_cross(model, ws, k, h) {
+            add_cross(model, ws, [a, b], &coupling);
+        }
+    }
+    for k in 0..ws.pivots.len() {
+        if let Some((bodies, coupling)) = pivots::calc_cross(model, ws, k, h) {
+            add_cross(model, ws, bodies, &coupling);
+        }
+    }
     let Islands { size, start, matrix, .. } = &mut ws.islands;
     size.iter().zip(start.iter()).all(|(n, at)| cholesky(&mut matrix[*at..*at + n * padded(*n)], *n))
 }
@@ -127,32 +143,36 @@ fn add_cross_terms(model: &Model, ws: &mut Workspace) {
             }
             i += 1;
         }
-        if let Some((&(va, la), &(vb, lb))) = both
-            && coupling != SpatialMatrix::default()
-        {
-            let islands = &mut ws.islands;
-            let group = islands.group[va];
-            let (at, stride) = (islands.start[group], padded(islands.size[group]));
-            let (rows_a, rows_b, matrix) = (&islands.rows[va], &islands.rows[vb], &mut islands.matrix[at..]);
-            let mut subtract = |column: usize, wrench: &Wrench| {
-                let mut entry = |row: usize, value: f64| {
-                    if row != HELD && column != HELD {
-                        matrix[row * stride + column] -= value;
-                        matrix[column * stride + row] -= value;
-                    }
-                };
-                for k in 0..3 {
-                    entry(rows_a[k], wrench.moment[k]);
-                    entry(rows_a[3 + k], wrench.force[k]);
-                }
-                for_path(&model.vehicles[va].tree, &ws.kin[va], la, |k, screw| entry(rows_a[k], screw.dot(wrench)));
-            };
-            for (l, column) in rows_b.iter().take(6).enumerate() {
-                subtract(*column, &column_of(&coupling, l));
-            }
-            for_path(&model.vehicles[vb].tree, &ws.kin[vb], lb, |l, screw| subtract(rows_b[l], &coupling.mul(screw)));
+        if both.is_some() && coupling != SpatialMatrix::default() {
+            add_cross(model, ws, [a, b], &coupling);
         }
     }
+}
+
+/// Subtracts JₐᵀC J_b and its transpose.
+fn add_cross(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: &SpatialMatrix) {
+    let ((va, la), (vb, lb)) = (model.owners[a], model.owners[b]);
+    let islands = &mut ws.islands;
+    let group = islands.group[va];
+    let (at, stride) = (islands.start[group], padded(islands.size[group]));
+    let (rows_a, rows_b, matrix) = (&islands.rows[va], &islands.rows[vb], &mut islands.matrix[at..]);
+    let mut subtract = |column: usize, wrench: &Wrench| {
+        let mut entry = |row: usize, value: f64| {
+            if row != HELD && column != HELD {
+                matrix[row * stride + column] -= value;
+                matrix[column * stride + row] -= value;
+            }
+        };
+        for k in 0..3 {
+            entry(rows_a[k], wrench.moment[k]);
+            entry(rows_a[3 + k], wrench.force[k]);
+        }
+        for_path(&model.vehicles[va].tree, &ws.kin[va], la, |k, screw| entry(rows_a[k], screw.dot(wrench)));
+    };
+    for (l, column) in rows_b.iter().take(6).enumerate() {
+        subtract(*column, &column_of(coupling, l));
+    }
+    for_path(&model.vehicles[vb].tree, &ws.kin[vb], lb, |l, screw| subtract(rows_b[l], &coupling.mul(screw)));
 }
 
 /// What a unit of the base's freedom `k` gives.
@@ -188,6 +208,8 @@ pub(crate) fn solve(model: &Model, ws: &mut Workspace, h: f64) {
             }
         }
     }
+    mechanism::add_wrenches(model, ws);
+    pivots::add_moments(model, ws);
     for i in 0..model.vehicles.len() {
         write_rhs(model, ws, i, h);
     }

@@ -4,6 +4,7 @@
 //!   V_B = I_lock⁻¹ (h − Σ I_i V_i^rel),    h = (L − x_B × p, p),
 //! so that poses and twists carry exactly (p, L), and only forces from outside can change them.
 
+use crate::mechanism::MechanismMemory;
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
 use spatial::{Pose, Vec3, Wrench};
@@ -26,6 +27,9 @@ pub struct State {
     pub momentum: Vec<Wrench>,
     /// Touching points' bristles, sorted by pair and feature.
     pub bristles: Vec<ContactMemory>,
+    /// Memory of the mechanisms, in the model's order.
+    #[serde(default)]
+    pub mechanisms: Vec<MechanismMemory>,
     /// Deflection of dry joint friction, by coordinate, rad or m.
     pub dry: Vec<f64>,
     /// The controller's memory; its meaning is the controller's.
@@ -49,6 +53,8 @@ pub struct ContactMemory {
     pub s_w: Vec3,
     /// Contact normal, from A to B, W axes.
     pub normal_w: Vec3,
+    /// Angular deflection of a pair that resists turning: spin along the normal, rolling across it, W axes, rad.
+    pub turn_w: Vec3,
     /// How rested the point is, from 0 (sliding) to 1.
     pub rest: f64,
     /// The point in B's body frame, m: identity of last resort.
@@ -68,6 +74,12 @@ pub struct Account {
     pub passive_joint_work: f64,
     /// Work of contact forces, J (negative: stored or dissipated).
     pub contact_work: f64,
+    /// Work of mechanisms, J (negative: stored or dissipated); that of a pull-in's motor is with the actuators.
+    #[serde(default)]
+    pub mechanism_work: f64,
+    /// What mechanisms have dissipated by their laws, J; with what a latch had stored when it let go.
+    #[serde(default)]
+    pub mechanism_loss: f64,
 }
 
 /// Work counters: they show numeric drift without a clock.
@@ -96,6 +108,7 @@ impl State {
             v: vec![0.0; model.nv()],
             momentum: vec![Wrench::default(); model.vehicles.len()],
             bristles: Vec::new(),
+            mechanisms: model.mechanisms.iter().map(|m| m.kind.start()).collect(),
             dry: vec![0.0; model.nv()],
             controller: Vec::new(),
             commands: vec![crate::Command::default(); model.actuators.len()],
@@ -120,6 +133,7 @@ impl State {
         self.v.clone_from(&other.v);
         self.momentum.clone_from(&other.momentum);
         self.bristles.clone_from(&other.bristles);
+        self.mechanisms.clone_from(&other.mechanisms);
         self.dry.clone_from(&other.dry);
         self.controller.clone_from(&other.controller);
         self.commands.clone_from(&other.commands);
@@ -135,5 +149,7 @@ impl Account {
         self.actuator_work += other.actuator_work * k;
         self.passive_joint_work += other.passive_joint_work * k;
         self.contact_work += other.contact_work * k;
+        self.mechanism_work += other.mechanism_work * k;
+        self.mechanism_loss += other.mechanism_loss * k;
     }
 }

@@ -12,7 +12,9 @@
 
 use crate::actuator::{ActuatorKind, CoordinatePoint};
 use crate::contacts::{Place, Touch, commit_bristles, find_touches};
+use crate::mechanism;
 use crate::model::{Base, Model};
+use crate::pivots;
 use crate::solve;
 use crate::state::State;
 use crate::workspace::{Workspace, world_wrench};
@@ -47,6 +49,8 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     calc_external(model, state, ws);
     calc_bias(model, state, ws, false);
     find_touches(model, state, ws, h);
+    mechanism::find_couplings(model, state, ws);
+    pivots::find_pivots(model, ws);
     place_laws(model, state, ws, scheme);
     solve_laws(model, state, ws, scheme);
     add_impulses(model, state, ws, h);
@@ -57,7 +61,9 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     ws.update_positions(model, state);
     place_centres(model, state, ws, scheme);
     finish(model, state, ws);
+    pivots::commit(ws);
     commit_bristles(model, state, ws);
+    mechanism::commit(model, state, ws);
 }
 
 /// Shifts every base so that its vehicle's centre of mass moves by h p/m exactly, with the momentum that moves it.
@@ -150,6 +156,7 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
 /// Decides for every touch and coordinate where its law is evaluated, and draws the first lines at zero gain.
 fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) {
     let h = model.step;
+    mechanism::place(model, ws, scheme);
     for i in 0..ws.touches.len() {
         let is_stiff = scheme == Scheme::ImplicitMidpoint && is_stiff(model, &ws.touches, i);
         let touch = &mut ws.touches[i];
@@ -165,6 +172,7 @@ fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) 
             touch.out.line = touch.out.law;
         }
     }
+    pivots::place(model, ws, h);
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
         let (q, v) = (state.q[coordinate.q_index], state.v[i]);
         // At the midpoint q has drifted by h/2 v already: its base is the start's plus h/4 v.
@@ -207,7 +215,7 @@ fn is_stiff(model: &Model, touches: &[Touch], index: usize) -> bool {
         model.owners.get(body).map_or(f64::INFINITY, |&(v, b)| model.vehicles[v].tree.bodies[b].inertia.mass)
     };
     let touch = &touches[index];
-    let law = &model.laws[touch.pair as usize];
+    let law = model.laws[touch.pair as usize].weighted(touch.weight);
     let lighter = mass(touch.body_a).min(mass(touch.body_b));
     let normal = law.normal.eval(touch.gap.min(-1e-5), 0.0);
     let stiffness = (-normal.d_gap).max(law.friction.map_or(0.0, |f| f.spring().0));
@@ -233,7 +241,7 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
         must_factor = !converged;
         if first_midpoint_pass {
             recalc_bias_at_midpoint(model, state, ws);
-            must_factor |= !ws.touches.is_empty();
+            must_factor |= !ws.touches.is_empty() || !ws.couplings.is_empty();
         }
         if converged && !first_midpoint_pass {
             break;
@@ -260,6 +268,7 @@ fn recalc_bias_at_midpoint(model: &Model, state: &State, ws: &mut Workspace) {
         touch.out.line -= touch.out.g * (carried - touch.carried) / model.step;
         touch.carried = carried;
     }
+    mechanism::update_carried(model, ws);
     // The start's twists come back: gains are counted from them.
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let (start, range) = (ws.base_start[i], vehicle.v_range());
@@ -280,7 +289,10 @@ fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
         let gain = relative_gain(model, ws, &touch);
         let force = touch.out.line - touch.out.g * gain / h;
         let next = touch.eval(&model.laws[touch.pair as usize], &(touch.u + touch.carried + gain), h);
-        check.add(touch.pair, (next.law - force).norm(), next.law.norm());
+        // A bound of friction that the normal force does not bear out is a miss as well.
+        let law = &model.laws[touch.pair as usize];
+        let unborne = law.friction.map_or(0.0, |f| f.highest_level() * (next.pressing[0] - next.normal_force).abs());
+        check.add(touch.pair, (next.law - force).norm().max(unborne), next.law.norm());
         touch.out = next;
         touch.out.force = force;
         ws.touches[i] = touch;
@@ -295,7 +307,8 @@ fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
         ws.coordinate_forces[i] = crate::actuator::CoordinateForce { effort: on_line, ..law };
         ws.coordinate_lines[i] = (law.effort + law.slope * ws.v_gain[i], law.slope);
     }
-    joints_hold && check.holds()
+    let pivots_hold = pivots::laws_hold(model, ws);
+    mechanism::laws_hold(model, ws) && pivots_hold && joints_hold && check.holds()
 }
 
 /// Compares lines with laws, pair by pair: a miss counts against the largest force of its own pair, so that a press
@@ -344,6 +357,8 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         let u_mean = touch.u + 0.5 * relative_gain(model, ws, touch);
         state.account.contact_work += impulse.dot(&u_mean);
     }
+    mechanism::add_impulses(model, state, ws, h);
+    pivots::add_impulses(model, state, ws, h);
     for (i, _) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
         let force = &ws.coordinate_forces[i];
         let moved = h * (state.v[i] + 0.5 * ws.v_gain[i]);

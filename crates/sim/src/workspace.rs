@@ -20,6 +20,8 @@ pub(crate) struct Workspace {
     pub points: Vec<ContactPoint>,
     pub reach: Vec<f64>,
     pub touches: Vec<Touch>,
+    pub couplings: Vec<crate::mechanism::Coupling>,
+    pub pivots: Vec<crate::pivots::PivotTouch>,
     /// Per body, about its vehicle's anchor: forces from outside, then what motion takes beyond them.
     pub external: Vec<Wrench>,
     pub bias: Vec<Wrench>,
@@ -70,6 +72,8 @@ impl Workspace {
             points: Vec::new(),
             reach: vec![0.0; bodies],
             touches: Vec::new(),
+            couplings: Vec::with_capacity(model.mechanisms.len()),
+            pivots: Vec::new(),
             external: vec![Wrench::default(); bodies],
             bias: vec![Wrench::default(); bodies],
             contact: vec![Wrench::default(); bodies],

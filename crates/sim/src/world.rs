@@ -1,6 +1,7 @@
 //! A model and its state, advancing.
 
 use crate::error::StepError;
+use crate::mechanism::{self, MechanismKind, MechanismMemory, MechanismReport};
 use crate::model::{Integrator, Model};
 use crate::state::State;
 use crate::step::{self, Scheme};
@@ -39,6 +40,8 @@ pub struct TouchReport {
     pub normal_force: f64,
     /// Gap at the step's start, m; negative: penetration.
     pub gap: f64,
+    /// Share of the pair's law that acts at the point: 1, but for the samples of a bed.
+    pub weight: f64,
     /// Bristle deflection, m.
     pub deflection: f64,
     /// Whether the bristle sticks.
@@ -50,7 +53,10 @@ const MAX_SPEED: f64 = 1e6;
 
 impl World {
     /// A world at a state.
-    pub fn new(model: Arc<Model>, state: State) -> Self {
+    pub fn new(model: Arc<Model>, mut state: State) -> Self {
+        // A state from before a model had mechanisms knows nothing of them: they begin as at the start.
+        let known = state.mechanisms.len();
+        state.mechanisms.extend(model.mechanisms.iter().skip(known).map(|m| m.kind.start()));
         let ws = Workspace::new(&model);
         let mut world = Self { model, state, ws, is_fresh: false };
         world.refresh();
@@ -166,6 +172,28 @@ impl World {
         self.ws.external[body]
     }
 
+    /// The mechanisms at the present state.
+    pub fn mechanisms(&self) -> impl Iterator<Item = MechanismReport> + '_ {
+        self.state.mechanisms.iter().enumerate().take(self.model.mechanisms.len()).map(|(i, memory)| {
+            let sides = mechanism::calc_sides(&self.model, &self.ws, i);
+            mechanism::calc_report(&self.model, i, &sides, memory, self.state.time)
+        })
+    }
+
+    /// Takes the present relative pose of a weld's or latch's frames for its rest, and engages it: nothing is stored.
+    /// A bushing keeps its nominal rest, a strut its length.
+    pub fn rest_mechanism(&mut self, index: usize) {
+        self.refresh();
+        let kind = self.model.mechanisms.get(index).map(|m| m.kind);
+        if let Some(MechanismKind::Weld(_) | MechanismKind::Latch(_)) = kind {
+            let sides = mechanism::calc_sides(&self.model, &self.ws, index);
+            let (since, offset) = (self.state.time, mechanism::calc_offset(&sides));
+            if let Some(memory) = self.state.mechanisms.get_mut(index) {
+                *memory = MechanismMemory { since, offset, ..MechanismMemory::default() };
+            }
+        }
+    }
+
     /// The points that touched in the last step.
     pub fn touches(&self) -> impl Iterator<Item = TouchReport> + '_ {
         self.ws.touches.iter().map(|t| TouchReport {
@@ -176,6 +204,7 @@ impl World {
             force_w: t.out.force,
             normal_force: t.out.normal_force,
             gap: t.gap,
+            weight: t.weight,
             deflection: t.out.s.norm(),
             sticks: t.out.sticks,
         })

@@ -3,8 +3,11 @@
 #![allow(clippy::unwrap_used)]
 
 mod bad_input;
+mod bars;
+mod beds;
 mod broad_phase;
 mod closed_form;
+mod handover;
 mod identity;
 mod properties;
 mod support;

@@ -1,8 +1,11 @@
 //! Closed forms that need more than a line, and event-exact references: independent of the simulator and of its laws.
 
 pub mod contensou;
+pub mod impact;
 pub mod oscillator;
+pub mod peg;
 pub mod pursuit;
+pub mod slider;
 pub mod stick_slip;
 
 /// The first instant after `from` at which `g` is not positive, found by steps of `dt` and bisection to round-off; `None`

@@ -7,12 +7,13 @@
 //! The bristle adds its stretch: below breakaway x = k V t/(k + K). The spring's force is that of the start of each step, as
 //! in the other simulators that ran the same job.
 
-use super::peers::PEERS;
+use super::peers::{PEERS, Peer};
 use crate::bench::{Film, Rig};
 use crate::scene::{GANTRY, GRAVITY, gantry_block, settle_gantry, stiff_contact};
 use crate::{Chart, Experiment, Figure, LabError, Options, Outcome};
 use sim::ActuatorKind;
 use std::f64::consts::PI;
+use std::fmt::Write;
 
 /// The entry in the catalogue.
 pub const EXPERIMENT: Experiment = Experiment {
@@ -49,6 +50,7 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
     ]);
     outcome.charts = charts(&pull, creep, step);
     outcome.notes.push(peer_table(&pull, creep));
+    outcome.notes.push("Other simulators: measured beforehand on the same job, see the source.".to_owned());
     outcome.run = pull.recorded;
     Ok(outcome)
 }
@@ -162,14 +164,26 @@ fn charts(pull: &Pull, creep: f64, step: f64) -> Vec<Chart> {
 /// Where a creep of round-off is drawn on a logarithmic axis, m/s.
 const CREEP_FLOOR: f64 = 1e-20;
 
+/// This run and the other simulators' as a Markdown table.
 fn peer_table(pull: &Pull, creep: f64) -> String {
-    let mut rows = vec![format!(
-        "simulator: creep m/s, pre-sliding m, peak N, onset s, departures. softdock: {creep:.2e}, {:.2e}, {:.3}, {:.3}, {}",
-        pull.early.1, pull.peak, pull.onset, pull.departures
-    )];
-    let peer = PEERS.iter().map(|p| {
-        format!("{}: {:.2e}, {:.2e}, {:.3}, {:.3}, {}", p.name, p.creep, p.presliding, p.peak, p.onset, p.departures)
-    });
-    rows.extend(peer);
-    rows.join("; ")
+    let own = Peer {
+        name: "softdock (this run)",
+        creep,
+        presliding: pull.early.1,
+        peak: pull.peak,
+        onset: pull.onset,
+        departures: pull.departures,
+    };
+    let mut text = String::from(
+        "| simulator | creep at 50 %, m/s | displacement at 90 %, m | peak, N | 5 mm/s at, s | departures |\n\
+         | --- | --- | --- | --- | --- | --- |\n",
+    );
+    for p in std::iter::once(&own).chain(&PEERS) {
+        let _ = writeln!(
+            text,
+            "| {} | {:.2e} | {:.2e} | {:.3} | {:.3} | {} |",
+            p.name, p.creep, p.presliding, p.peak, p.onset, p.departures
+        );
+    }
+    text
 }

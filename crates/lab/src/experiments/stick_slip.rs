@@ -11,6 +11,7 @@ use crate::scene::{GANTRY, GRAVITY, contact_law, gantry_block, settle_gantry};
 use crate::{Chart, Experiment, Figure, LabError, Options, Outcome};
 use friction::Bristle;
 use sim::Integrator;
+use std::fmt::Write;
 
 /// The entry in the catalogue.
 pub const EXPERIMENT: Experiment = Experiment {
@@ -24,14 +25,14 @@ const WEIGHT: f64 = MASS * GRAVITY;
 const MU_KINETIC: f64 = 0.3;
 /// One of four points: normal stiffness, bristle's stiffness and damping.
 const POINT: f64 = 1e6;
-const BRISTLE: (f64, f64) = (2.5e4, 15.0);
-/// ω h; and where the pull's share V √(k m) of the swing exceeds half the drop of force, so that the stick is short.
+const BRISTLE: (f64, f64) = (2.5e4, 50.0);
+/// ω h; and where the pull's share V √(k m) of the swing exceeds a quarter of the drop of force, so that the stick is short.
 const RESOLUTION: (f64, f64) = (1e-3, 1e-4);
 
 /// Step for a case, s.
 fn calc_step(case: &StickSlip) -> f64 {
     let omega = (case.pull_stiffness / MASS).sqrt();
-    let is_fast = case.pull_speed * MASS * omega > 0.5 * (case.bound_static - case.bound_kinetic);
+    let is_fast = case.pull_speed * MASS * omega > 0.25 * (case.bound_static - case.bound_kinetic);
     (if is_fast { RESOLUTION.1 } else { RESOLUTION.0 }) / omega
 }
 
@@ -48,6 +49,7 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
     outcome.figures.extend(presliding(&case, step_of(&case))?);
     outcome.charts = vec![force_chart(&case, &run), error_chart(&grid, &fine, &coarse)];
     outcome.run = run.recorded;
+    outcome.notes.push(table(&grid, &fine, &step_of));
     let cases = grid.len();
     outcome.notes.push(format!(
         "{cases} cases: spring {} N/m, pull {} m/s, static over kinetic level {}; kinetic level 0.3, 1 kg.",
@@ -202,6 +204,29 @@ fn errors(case: &StickSlip, measured: &Cycle) -> [f64; 3] {
     let exact = case.cycle(duration(case)).unwrap_or(nan);
     [measured.period / exact.period, measured.amplitude / exact.amplitude, measured.stick / exact.stick]
         .map(|r| (r - 1.0).abs())
+}
+
+/// Every case of the grid.
+fn table(grid: &[StickSlip], measured: &[Cycle], step_of: &dyn Fn(&StickSlip) -> f64) -> String {
+    let mut text = String::from(
+        "| spring, N/m | pull, m/s | levels | step, µs | period, s | amplitude, N | stick, s | errors, % |\n\
+         | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+    );
+    for (case, cycle) in grid.iter().zip(measured) {
+        let [period, amplitude, stick] = errors(case, cycle).map(|e| 100.0 * e);
+        let _ = writeln!(
+            text,
+            "| {} | {} | {:.2} | {:.1} | {:.4} | {:.4} | {:.4} | {period:.2}, {amplitude:.2}, {stick:.2} |",
+            case.pull_stiffness,
+            case.pull_speed,
+            case.bound_static / case.bound_kinetic,
+            1e6 * step_of(case),
+            cycle.period,
+            cycle.amplitude,
+            cycle.stick
+        );
+    }
+    text
 }
 
 const QUANTITIES: [&str; 3] = ["period", "amplitude", "stick duration"];

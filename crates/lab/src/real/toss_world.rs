@@ -6,11 +6,13 @@
 
 use super::RealError;
 use super::toss::{Correction, MASS, MOMENT, Miss, RATE, Start, Summary, Toss, WIDTH};
+use crate::bench::Bench;
+use crate::scene::one_link;
 use contact::{Normal, NormalLaw, Shape};
 use friction::Bristle;
-use multibody::{Inertial, LinkDescription, RobotDescription, Tree};
-use sim::{Base, Environment, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, State, VehicleSpec, World};
-use spatial::{Mat3, Pose, Vec3};
+use multibody::Geometry;
+use sim::{Base, Integrator, Model, ModelSpec, PairLaw, State, World};
+use spatial::{Pose, Vec3};
 use std::sync::Arc;
 
 /// What the cube's corner and the table are made of.
@@ -96,35 +98,16 @@ impl Thrower {
 }
 
 fn build_spec(surface: &Surface, rules: &Rules) -> ModelSpec {
-    let table = Pose::translation(0.0, 0.0, rules.correction.table);
-    let shape =
-        |name: &str, vehicle, pose_ls, shape| ShapeSpec { name: name.to_owned(), vehicle, link: 0, pose_ls, shape };
-    let law = PairLaw::new(Normal::new(surface.normal), Some(surface.friction.into()));
-    ModelSpec {
-        vehicles: vec![VehicleSpec { name: "cube".to_owned(), tree: cube_tree(), base: Base::Free }],
-        shapes: vec![
-            shape("table", None, table, Shape::HalfSpace),
-            shape("corners", Some(0), Pose::identity(), cube_shape(surface.radius)),
-        ],
-        pairs: vec![([0, 1], law)],
-        actuators: Vec::new(),
-        environment: Environment::Uniform { gravity: Vec3::new(0.0, 0.0, -rules.correction.gravity) },
-        integrator: rules.integrator,
-        step: 1.0 / RATE / rules.substeps as f64,
-        one_sided_force: Vec3::zeros(),
-    }
-}
-
-fn cube_tree() -> Tree {
-    let tensor_com = Mat3::identity() * MOMENT;
-    let link = LinkDescription {
-        name: "cube".to_owned(),
-        inertial: Some(Inertial { mass: MASS, com: Vec3::zeros(), tensor_com }),
-        visuals: Vec::new(),
-        collisions: Vec::new(),
-    };
-    let (name, file) = ("cube".to_owned(), "cube".into());
-    Tree::from_description(&RobotDescription { name, file, links: vec![link], joints: Vec::new() })
+    let step = 1.0 / RATE / rules.substeps as f64;
+    let mut bench =
+        Bench::new("cube-tosses", step).gravity([0.0, 0.0, -rules.correction.gravity]).integrator(rules.integrator);
+    bench.add_floor();
+    bench.spec.shapes[0].pose_ls = Pose::translation(0.0, 0.0, rules.correction.table);
+    let robot = one_link("cube", MASS, Vec3::repeat(MOMENT), Geometry::Box { size: Vec3::repeat(WIDTH) });
+    let cube = bench.add_vehicle("cube", &robot, Base::Free);
+    bench.add_shape(Some(cube), 0, cube_shape(surface.radius));
+    bench.pair("floor", "cube", PairLaw::new(Normal::new(surface.normal), Some(surface.friction.into())));
+    bench.spec
 }
 
 fn cube_shape(radius: f64) -> Shape {

@@ -38,9 +38,12 @@ pub(super) fn resolve(scenario: &Scenario, vehicles: &mut [VehicleSpec], faults:
             rotors[i] = Some((v, tree.add_rotor(body, &axis, *inertia_kg_m2, &actuator.name)));
         }
     }
+    let is_latch = |m: &spec::Mechanism| matches!(m.kind, spec::MechanismKind::Latch(_));
+    let all = scenario.mechanisms.iter().enumerate();
+    let latches: Vec<_> = all.filter(|(_, m)| is_latch(m)).map(|(k, m)| (k, m.name.as_str())).collect();
     let mut table = ActuatorTable::default();
     for (i, actuator) in scenario.actuators.iter().enumerate() {
-        add(&mut table, actuator, &Site { i, vehicles, rotor: rotors[i] }, faults);
+        add(&mut table, actuator, &Site { i, vehicles, rotor: rotors[i], latches: &latches }, faults);
     }
     table
 }
@@ -50,6 +53,8 @@ struct Site<'a> {
     i: usize,
     vehicles: &'a [VehicleSpec],
     rotor: Option<(usize, usize)>,
+    /// Index and name of the mechanisms that are latches.
+    latches: &'a [(usize, &'a str)],
 }
 
 impl Site<'_> {
@@ -108,6 +113,12 @@ fn add(table: &mut ActuatorTable, actuator: &spec::Actuator, site: &Site<'_>, fa
             push(actuator.name.clone(), ActuatorKind::JointEffort { coordinate, limit: *torque_limit_n_m });
             table.rotor_speeds.push((coordinate, *speed_rad_per_s));
         }
+        spec::ActuatorKind::LatchRelease { latch } => match site.latches.iter().find(|(_, name)| name == latch) {
+            Some((mechanism, _)) => {
+                push(actuator.name.clone(), ActuatorKind::LatchRelease { mechanism: *mechanism });
+            }
+            None => faults.unknown(&key("latch"), "latch", latch, site.latches.iter().map(|(_, name)| *name)),
+        },
     }
 }
 

@@ -1,6 +1,6 @@
 //! Contact laws of the file → laws of the world.
 
-use crate::spec::{BristleFriction, ContactLaw, FrictionLaw, NormalLaw};
+use crate::spec::{self, BristleFriction, ContactLaw, FrictionLaw, NormalLaw};
 use contact::Normal;
 use friction::{Bristle, Friction, LuGre, RegularisedCoulomb};
 use sim::PairLaw;
@@ -10,6 +10,15 @@ const NO_FALL: f64 = 1e-3;
 
 pub(super) fn pair_law(law: &ContactLaw) -> PairLaw {
     PairLaw::new(normal_law(&law.normal), friction_law(&law.friction))
+}
+
+pub(super) fn pivot_law(law: &spec::Pivot) -> friction::Pivot {
+    friction::Pivot {
+        spin_lever: law.spin_lever_m,
+        rolling_lever: law.rolling_lever_m,
+        stiffness: law.stiffness_n_m_per_rad,
+        damping: law.damping_n_m_s_per_rad,
+    }
 }
 
 fn normal_law(law: &NormalLaw) -> Normal {

@@ -3,9 +3,11 @@
 //! Every name is resolved here; what cannot be built is told all at once, each fault with its line in the file.
 
 mod actuators;
+mod beds;
 mod faults;
 mod kinematics;
 mod laws;
+mod mechanisms;
 mod shapes;
 mod start;
 mod vehicles;
@@ -52,6 +54,7 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
     let (robots, mut specs) = vehicles;
     let table = actuators::resolve(scenario, &mut specs, &mut faults);
     let (shapes, pairs) = shapes::resolve(scenario, &robots, &specs, &mut faults);
+    let mechanisms = mechanisms::resolve(scenario, &specs, &mut faults);
     refuse_what_is_not_simulated(scenario, &mut faults);
     if !faults.is_empty() {
         return Err(faults.into_errors());
@@ -60,6 +63,7 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
         vehicles: specs,
         shapes,
         pairs,
+        mechanisms,
         actuators: table.actuators.clone(),
         environment: environment(&scenario.environment),
         integrator: integrator(scenario.integrator.kind),
@@ -83,7 +87,7 @@ fn finish(
     table: &ActuatorTable,
     mut faults: Faults<'_>,
 ) -> Result<Mission, ScenarioErrors> {
-    let world = start::world(scenario, model, table, &mut faults);
+    let world = mechanisms::settle(scenario, start::world(scenario, model, table, &mut faults));
     let controller = strategy::build(scenario, model, table, &mut faults);
     match controller {
         Some(controller) if faults.is_empty() => Ok(Mission {

@@ -3,9 +3,10 @@
 //! Shapes of different vehicles (and of the world) may touch unless a `[[contact]]` says `enabled = false`; shapes of one
 //! vehicle only where a `[[contact]]` names them. Every shape answers to its own name and to its link's.
 
+use super::beds;
 use super::faults::Faults;
-use super::laws::pair_law;
-use crate::spec::{Grain, Scenario, ShapeKind};
+use super::laws::{pair_law, pivot_law};
+use crate::spec::{Grain, Scenario};
 use contact::Shape;
 use multibody::{Geometry, RobotDescription};
 use sim::{Base, PairLaw, ShapeSpec, VehicleSpec};
@@ -34,7 +35,7 @@ pub(super) fn resolve(
     for (v, robot) in robots.iter().enumerate() {
         shapes.extend(of_robot(v, &vehicles[v].name, robot));
     }
-    add_scenario_shapes(scenario, vehicles, &mut shapes, faults);
+    add_scenario_shapes(scenario, (robots, vehicles), &mut shapes, faults);
     check_rules(scenario, &shapes, faults);
     let mut pairs = Vec::new();
     for b in 1..shapes.len() {
@@ -80,19 +81,19 @@ pub fn shape_of_geometry(geometry: &Geometry) -> Shape {
 
 fn add_scenario_shapes(
     scenario: &Scenario,
-    vehicles: &[VehicleSpec],
+    (robots, vehicles): (&[RobotDescription], &[VehicleSpec]),
     shapes: &mut Vec<Named>,
     faults: &mut Faults<'_>,
 ) {
     for (i, shape) in scenario.shapes.iter().enumerate() {
         let Some((vehicle, link)) = place_of(vehicles, &shape.on, &format!("shape[{i}].on"), faults) else { continue };
-        let spec = ShapeSpec {
-            name: shape.name.clone(),
-            vehicle,
-            link,
-            pose_ls: shape.pose.pose(),
-            shape: shape_of_kind(&shape.kind),
+        let description = vehicle.map(|v| &robots[v].links[link]);
+        let Some((pose, form)) = beds::shape_of_kind(&shape.kind, description, &format!("shape[{i}].of"), faults)
+        else {
+            continue;
         };
+        let pose_ls = shape.pose.pose() * pose;
+        let spec = ShapeSpec { name: shape.name.clone(), vehicle, link, pose_ls, shape: form };
         let mut names = vec![shape.place()];
         names.extend(vehicle.map(|_| shape.on.clone()));
         shapes.push(Named { spec, names });
@@ -122,19 +123,6 @@ pub(super) fn place_of(
     found.map(|l| (Some(v), l))
 }
 
-fn shape_of_kind(kind: &ShapeKind) -> Shape {
-    match *kind {
-        ShapeKind::Box { size_m } => Shape::Cuboid { half_extents: 0.5 * Vec3::from(size_m) },
-        ShapeKind::Sphere { radius_m } => Shape::Ball { radius: radius_m },
-        ShapeKind::Cylinder { radius_m, length_m } => Shape::Cylinder { radius: radius_m, half_length: 0.5 * length_m },
-        ShapeKind::Capsule { radius_m, length_m } if length_m > 0.0 => {
-            Shape::Capsule { radius: radius_m, half_length: 0.5 * length_m }
-        }
-        ShapeKind::Capsule { radius_m, .. } => Shape::Ball { radius: radius_m },
-        ShapeKind::HalfSpace => Shape::HalfSpace,
-    }
-}
-
 /// A rule that names nothing is a slip of the pen.
 fn check_rules(scenario: &Scenario, shapes: &[Named], faults: &mut Faults<'_>) {
     for (i, rule) in scenario.contacts.iter().enumerate() {
@@ -144,6 +132,15 @@ fn check_rules(scenario: &Scenario, shapes: &[Named], faults: &mut Faults<'_>) {
                 let valid: Vec<&str> = all().collect();
                 faults.unknown(&format!("contact[{i}].between[{k}]"), "shape or link", pattern, valid);
             }
+        }
+        if let Some(grain) = &rule.grain
+            && !rule
+                .between
+                .iter()
+                .any(|side| crate::glob_matches(&grain.on, side) || crate::glob_matches(side, &grain.on))
+        {
+            let sides = rule.between.iter().map(String::as_str);
+            faults.unknown(&format!("contact[{i}].grain.on"), "side of this contact", &grain.on, sides);
         }
     }
 }
@@ -158,12 +155,15 @@ fn law_of_pair(scenario: &Scenario, vehicles: &[VehicleSpec], a: &Named, b: &Nam
         names_a.iter().find(|a| named(a))?;
     }
     let law = scenario.contact_law(&names_a, &names_b);
-    let grain = scenario.contact_rule(&names_a, &names_b).and_then(|r| r.grain.as_ref());
+    let rule = scenario.contact_rule(&names_a, &names_b);
+    let grain = rule.and_then(|r| r.grain.as_ref());
+    let pivot = rule.and_then(|r| r.pivot.as_ref()).map(pivot_law);
     let on_side = |on: &str, names: &[&str]| names.iter().any(|n| crate::glob_matches(on, n));
     law.enabled.then(|| {
         let grain = grain.map(|g| (g, on_side(&g.on, &names_b)));
         PairLaw {
             grain: grain.map(|(g, on_b)| grain_on(vehicles, if on_b { b } else { a }, g, on_b)),
+            pivot,
             ..pair_law(&law)
         }
     })

@@ -2,6 +2,7 @@
 
 use super::capture::CaptureWatch;
 use super::creep::CreepGauge;
+use super::mechanisms::MechanismWatch;
 use super::{Metric, Outcome};
 use crate::build::Mission;
 use crate::spec::Strategy;
@@ -17,6 +18,7 @@ const AUDIT_EVERY: u64 = 100;
 pub struct Judge {
     capture: Option<CaptureWatch>,
     creep: CreepGauge,
+    mechanisms: MechanismWatch,
     audit: Option<MomentumAudit>,
     energy_start: Energy,
     first_contact: Option<f64>,
@@ -37,6 +39,7 @@ impl Judge {
         Self {
             capture,
             creep: CreepGauge::new(mission.steps, world.model().step),
+            mechanisms: MechanismWatch::new(world),
             audit: MomentumAudit::applies(world).then(|| MomentumAudit::new(world)),
             energy_start: Energy::of(world),
             first_contact: None,
@@ -119,6 +122,7 @@ impl Judge {
             );
             add("held_rotation_rad", creep.total_rotation.into(), "rotation of the held body likewise");
         }
+        self.mechanisms.add_metrics(world, &mut metrics);
         self.add_accounts(world, &mut metrics);
         metrics
     }
@@ -136,7 +140,11 @@ impl Judge {
         let (now, account) = (Energy::of(world), world.state().account);
         let change = now.kinetic - self.energy_start.kinetic + now.potential - self.energy_start.potential;
         let external = if world.model().environment.is_still() { account.external_work } else { 0.0 };
-        let work = account.actuator_work + account.passive_joint_work + account.contact_work + external;
+        let work = account.actuator_work
+            + account.passive_joint_work
+            + account.contact_work
+            + account.mechanism_work
+            + external;
         add("kinetic_energy_j", now.kinetic, "at the end");
         add("actuator_work_j", account.actuator_work, "work of the joint actuators");
         add("contact_work_j", account.contact_work, "work of contact forces: negative, stored or dissipated");
@@ -157,6 +165,7 @@ impl Observer for Judge {
         if let Some(capture) = &mut self.capture {
             capture.observe(world, &mut self.events);
         }
+        self.mechanisms.observe(world, &mut self.events);
         self.creep.observe(world);
         if world.state().steps.is_multiple_of(AUDIT_EVERY)
             && let Some(audit) = &mut self.audit

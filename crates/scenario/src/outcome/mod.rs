@@ -4,6 +4,7 @@ mod capture;
 mod creep;
 mod expect;
 mod judge;
+mod mechanisms;
 
 pub use expect::{Verdict, check_expectations};
 pub use judge::Judge;

@@ -18,6 +18,7 @@ pub(super) struct Names<'a> {
     vehicles: Vec<&'a str>,
     actuators: Vec<&'a str>,
     sensors: Vec<&'a str>,
+    mechanisms: Vec<&'a str>,
 }
 
 impl<'a> Names<'a> {
@@ -27,7 +28,13 @@ impl<'a> Names<'a> {
             let nodes = root.child(key).map(Node::list).unwrap_or_default();
             nodes.iter().filter_map(Node::name).collect()
         };
-        Self { root, vehicles: names("vehicle"), actuators: names("actuator"), sensors: names("sensor") }
+        Self {
+            root,
+            vehicles: names("vehicle"),
+            actuators: names("actuator"),
+            sensors: names("sensor"),
+            mechanisms: names("mechanism"),
+        }
     }
 }
 
@@ -36,6 +43,7 @@ pub(super) fn check(checker: &mut Checker<'_>, kind: &str, (node, text): (&Node,
     let problem = match kind {
         "vehicle" => known(&checker.names.vehicles, "vehicle", text, path),
         "actuator" => actuator(&checker.names, text, path),
+        "mechanism" => known(&checker.names.mechanisms, "mechanism", text, path),
         "vehicle/part" if text == "world" => None,
         "vehicle/part" => part(&checker.names, text, path),
         "pattern" => pattern(&checker.names, text, path),

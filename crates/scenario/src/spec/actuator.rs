@@ -72,6 +72,12 @@ pub enum ActuatorKind {
         #[serde(default)]
         speed_rad_per_s: f64,
     },
+    /// The command opens a latch while it is above one half, and makes it ready again below.
+    LatchRelease {
+        /// The latch, a `[[mechanism]]` by name.
+        #[schemars(extend("x-refers" = "mechanism"))]
+        latch: String,
+    },
 }
 
 /// A position and rate loop on one joint or on several with the same gains.
@@ -153,7 +159,7 @@ impl ActuatorKind {
     pub fn axis(&self) -> Option<Vec3> {
         match self {
             Self::Thruster { direction: along, .. } | Self::ReactionWheel { axis: along, .. } => Some(unit(along)),
-            Self::JointTorque { .. } | Self::JointDrive(_) => None,
+            Self::JointTorque { .. } | Self::JointDrive(_) | Self::LatchRelease { .. } => None,
         }
     }
 }

@@ -26,6 +26,30 @@ pub struct ContactRule {
     /// The direction along which the friction levels are meant, for a law with `across_ratio`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grain: Option<Grain>,
+    /// Resistance of every single point to spinning and rolling, where no patch of points carries it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pivot: Option<Pivot>,
+}
+
+/// Lumped resistance to turning: moments up to a lever times the normal force.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pivot {
+    /// Lever of spinning about the normal, m; (2/3) μ R for a disc of radius R that spins without sliding.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub spin_lever_m: f64,
+    /// Lever of rolling, m.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub rolling_lever_m: f64,
+    /// Stiffness of the angular bristles, N·m/rad.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub stiffness_n_m_per_rad: f64,
+    /// Their damping, N·m·s/rad.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub damping_n_m_s_per_rad: f64,
 }
 
 /// A direction of a surface, as brushed or turned.

@@ -14,6 +14,7 @@ mod campaign;
 mod contact;
 mod effect;
 mod friction;
+mod mechanism;
 mod pose;
 mod sensor;
 mod shape;
@@ -22,9 +23,12 @@ mod vehicle;
 
 pub use actuator::{Actuator, ActuatorKind, Drive, DriveMotion, JointDrive};
 pub use campaign::{Campaign, Disperse, Expect, Normal, Scalar, Uniform};
-pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw};
+pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw, Pivot};
 pub use effect::{Effect, ParamValue};
 pub use friction::{BristleFriction, Dahl, ElastoPlastic, FrictionLaw, LuGre, RegularisedCoulomb};
+pub use mechanism::{
+    Capture, Hold, Latch, Mechanism, MechanismKind, MechanismSide, Overload, PerAxis, Strut, StrutSides, Weld,
+};
 pub use pose::{PoseSpec, TwistSpec};
 pub use sensor::{Sensor, SensorKind};
 pub use shape::{Shape, ShapeKind};
@@ -72,6 +76,9 @@ pub struct Scenario {
     /// Laws of named contact pairs; of several entries that match a pair the last one decides.
     #[serde(default, rename = "contact", skip_serializing_if = "Vec::is_empty")]
     pub contacts: Vec<ContactRule>,
+    /// Struts, bushings, latches and welds.
+    #[serde(default, rename = "mechanism", skip_serializing_if = "Vec::is_empty")]
+    pub mechanisms: Vec<Mechanism>,
     /// Joint motors, thrusters and wheels.
     #[serde(default, rename = "actuator", skip_serializing_if = "Vec::is_empty")]
     pub actuators: Vec<Actuator>,

@@ -22,7 +22,9 @@ impl Target {
     pub(super) fn of(kind: &ActuatorKind) -> Self {
         match kind {
             ActuatorKind::JointDrive { .. } => Self::Position,
-            ActuatorKind::JointEffort { .. } | ActuatorKind::Thruster { .. } => Self::Effort,
+            ActuatorKind::JointEffort { .. } | ActuatorKind::Thruster { .. } | ActuatorKind::LatchRelease { .. } => {
+                Self::Effort
+            }
         }
     }
 

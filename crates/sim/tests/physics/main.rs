@@ -5,12 +5,18 @@
 //! `SOFTDOCK_BLESS=1 cargo test -p softdock-sim -- table` writes them anew.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod beds;
+mod brush;
 mod convergence;
 mod determinism;
 mod free_motion;
 mod friction;
 mod guided;
 mod joints;
+mod mechanism_energy;
+mod mechanism_holds;
+mod mechanism_latches;
+mod mechanism_struts;
 mod momentum;
 mod orbit;
 mod restitution;
@@ -18,3 +24,4 @@ mod stiff;
 mod support;
 mod symmetry;
 mod torque_free;
+mod wedge;

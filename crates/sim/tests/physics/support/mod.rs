@@ -1,6 +1,7 @@
 //! Small worlds for the tests.
 
 pub(crate) mod elliptic;
+pub(crate) mod mechanisms;
 pub(crate) mod scenes;
 pub(crate) mod table;
 
@@ -109,6 +110,7 @@ pub(crate) fn spec(vehicles: Vec<(Tree, Base)>, setup: &Setup) -> ModelSpec {
         vehicles,
         shapes: Vec::new(),
         pairs: Vec::new(),
+        mechanisms: Vec::new(),
         actuators: Vec::new(),
         environment: setup.environment,
         integrator: setup.integrator,
