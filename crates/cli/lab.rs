@@ -28,6 +28,12 @@ pub(crate) struct Arguments {
     /// Shorter runs and coarser grids, for a first look
     #[arg(long)]
     quick: bool,
+    /// Folder of the recordings of real things [default: $SOFTDOCK_RECORDINGS]
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// Fit parameters to the recordings anew (minutes) in place of judging the committed ones
+    #[arg(long)]
+    refit: bool,
 }
 
 fn parse_step(text: &str) -> Result<f64, String> {
@@ -37,7 +43,8 @@ fn parse_step(text: &str) -> Result<f64, String> {
 
 /// Lists, runs one, or reports on all.
 pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
-    let options = Options { step: arguments.step_s, quick: arguments.quick };
+    let (step, quick, data, refit) = (arguments.step_s, arguments.quick, arguments.data.clone(), arguments.refit);
+    let options = Options { step, quick, data, refit };
     if arguments.report {
         return report_on_all(arguments, &options);
     }
@@ -76,6 +83,15 @@ fn answer(experiment: Experiment, options: &Options) -> anyhow::Result<Option<An
         }
         Err(error) => Err(error.into()),
     }
+}
+
+/// Says of an experiment that cannot be part of a report that its recordings are not here.
+fn lacks_recordings(experiment: Experiment, options: &Options) -> bool {
+    let lacks = lab::real::lacks_recordings(&experiment, options.data.as_deref());
+    if lacks {
+        eprintln!("{} SKIPPED: {}", experiment.name, lab::real::RealError::NoFolder);
+    }
+    lacks
 }
 
 fn run_one(arguments: &Arguments, experiment: Experiment, options: &Options) -> anyhow::Result<Status> {
@@ -135,7 +151,7 @@ fn report_on_all(arguments: &Arguments, options: &Options) -> anyhow::Result<Sta
     let target = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out/lab-report"));
     let folder = OutputFolder::create(&target)?;
     let mut answers = Vec::new();
-    for experiment in lab::catalogue() {
+    for experiment in lab::catalogue().into_iter().filter(|e| !lacks_recordings(*e, options)) {
         let started = Instant::now();
         let Some(answer) = answer(experiment, options)? else { return Ok(Status::Diverged) };
         eprintln!("{} ({:.1} s)", experiment.name, started.elapsed().as_secs_f64());

@@ -10,6 +10,10 @@ fn main() -> Result<(), LabError> {
     let names: Vec<String> = arguments.collect();
     let mut answers = Vec::new();
     for experiment in lab::catalogue().into_iter().filter(|e| names.is_empty() || names.iter().any(|n| n == e.name)) {
+        if lab::real::lacks_recordings(&experiment, None) {
+            eprintln!("{} SKIPPED: {}", experiment.name, lab::real::RealError::NoFolder);
+            continue;
+        }
         let started = std::time::Instant::now();
         answers.push((experiment, (experiment.run)(&Options::default())?));
         eprintln!("{} ({:.1} s)", experiment.name, started.elapsed().as_secs_f64());

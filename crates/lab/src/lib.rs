@@ -12,6 +12,7 @@ mod chart;
 pub mod exact;
 mod experiments;
 mod outcome;
+pub mod real;
 pub mod report;
 pub mod scene;
 

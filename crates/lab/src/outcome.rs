@@ -20,6 +20,10 @@ pub struct Options {
     pub step: Option<f64>,
     /// Shorter runs and coarser grids, for a first look; figures that need the whole run are left out.
     pub quick: bool,
+    /// Folder of the recordings of real things; the environment's where absent (see [`crate::real`]).
+    pub data: Option<std::path::PathBuf>,
+    /// Whether parameters are fitted to recordings anew; else the committed ones are judged.
+    pub refit: bool,
 }
 
 /// What an experiment found.
@@ -197,4 +201,7 @@ pub enum LabError {
     /// The recording failed.
     #[error(transparent)]
     Record(#[from] record::RecordError),
+    /// A recording of the real thing is missing or unsound.
+    #[error(transparent)]
+    Real(Box<crate::real::RealError>),
 }

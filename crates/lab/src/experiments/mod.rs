@@ -40,5 +40,7 @@ pub fn catalogue() -> Vec<Experiment> {
         force_balance::EXPERIMENT,
         smooth_sliding::EXPERIMENT,
         integrators::EXPERIMENT,
+        crate::real::entry_tosses::EXPERIMENT,
+        crate::real::entry_fretting::EXPERIMENT,
     ]
 }
