@@ -6,7 +6,7 @@ use lab::{Options, chart_svg};
 /// Runs an experiment quickly; says every figure, and which do not hold.
 fn figures_of(name: &str) {
     let experiment = lab::find(name).unwrap();
-    let outcome = (experiment.run)(&Options { step: None, quick: true }).unwrap();
+    let outcome = (experiment.run)(&Options { quick: true, ..Options::default() }).unwrap();
     assert!(outcome.figures.len() > 1, "{name} measures something");
     for row in lab::report::rows(&outcome) {
         println!("{}", row.join(" | "));
