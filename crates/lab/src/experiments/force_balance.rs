@@ -6,13 +6,15 @@
 //! | a ball in a corner of three planes, frictionless | 3 | each presses with W/(3 cos β), β between normal and vertical |
 //! | the same with friction | 3 | Σ f = −W |
 //! | a ball in a groove of two planes | 2 | each presses with W/(2 cos β) |
+//! | a ball in a drogue, from 2 mm off its axis | 8 | Σ f = −W |
+//! | a capsule probe that leans in a socket: floor, wall and rim | 3 | Σ f = −W, Σ r × f = 0 |
 //!
 //! The residual is the largest over ten steps after the scene has come to rest.
 
 use crate::bench::{Bench, Rig};
-use crate::scene::{GRAVITY, ball_robot, box_moments, box_robot, contact_law, joint, link};
+use crate::scene::{GRAVITY, ball_robot, box_moments, box_robot, contact_law, cylinder_robot, joint, link};
 use crate::{Chart, Experiment, Figure, LabError, Options, Outcome};
-use contact::{Normal, NormalLaw, Shape};
+use contact::{Docking, Normal, NormalLaw, Shape};
 use friction::Bristle;
 use multibody::{Geometry, JointDescription, JointKind, RobotDescription};
 use sim::{ActuatorKind, Base, PairLaw, ShapeSpec};
@@ -34,30 +36,55 @@ const BALANCE: f64 = 1e-9;
 fn run(options: &Options) -> Result<Outcome, LabError> {
     let step = options.step.unwrap_or(1e-3);
     let mut outcome = Outcome::default();
-    let mut chart = Chart::new("Residual force on the way to rest", "time, s", "|Σ f + W|, N").logarithmic(false, true);
+    let mut curves = vec![add_bar(&mut outcome, step)?];
+    curves.extend(add_hollows(&mut outcome, step)?);
+    curves.extend(add_docked(&mut outcome, step)?);
+    let chart = Chart::new("Residual force on the way to rest", "time, s", "|Σ f + W|, N").logarithmic(false, true);
+    outcome.charts.push(curves.into_iter().fold(chart, |chart, (name, points)| chart.line(name, points)));
+    outcome.run = record(step)?;
+    Ok(outcome)
+}
+
+/// Name and residual force over time.
+type Residual = (String, Vec<(f64, f64)>);
+
+fn add_bar(outcome: &mut Outcome, step: f64) -> Result<Residual, LabError> {
     let bar = follow(build_bar(step)?, 1, 3.0)?;
-    add_balance(&mut outcome, "bar between two pads", &bar);
+    add_balance(outcome, "bar between two pads", &bar);
     outcome.figures.extend([
         Figure::absolute("bar between two pads: points", bar.points as f64, 8.0, "1", 0.0),
         Figure::absolute("bar between two pads: force of the fixed pad", bar.forces[0], GRIP, "N", BALANCE),
     ]);
-    chart = chart.line("bar between two pads", bar.residual.clone());
+    Ok(("bar between two pads".to_owned(), bar.residual))
+}
+
+fn add_hollows(outcome: &mut Outcome, step: f64) -> Result<Vec<Residual>, LabError> {
     let slope = 40.0_f64.to_radians();
+    let mut curves = Vec::new();
     for (name, planes, mu) in [("corner", 3, 0.0), ("corner with friction", 3, 0.4), ("groove", 2, 0.0)] {
         let rest = follow(build_planes(planes, slope, mu, step)?, 0, 3.0)?;
-        add_balance(&mut outcome, &format!("ball in a {name}"), &rest);
-        if mu == 0.0 {
-            let expected = WEIGHT / (planes as f64 * slope.cos());
-            for (k, force) in rest.forces.iter().enumerate() {
-                let name = format!("ball in a {name}: force of plane {}", k + 1);
-                outcome.figures.push(Figure::absolute(name, *force, expected, "N", BALANCE));
-            }
+        add_balance(outcome, &format!("ball in a {name}"), &rest);
+        let expected = WEIGHT / (planes as f64 * slope.cos());
+        for (k, force) in rest.forces.iter().enumerate().filter(|_| mu == 0.0) {
+            let name = format!("ball in a {name}: force of plane {}", k + 1);
+            outcome.figures.push(Figure::absolute(name, *force, expected, "N", BALANCE));
         }
-        chart = chart.line(format!("ball in a {name}"), rest.residual);
+        curves.push((format!("ball in a {name}"), rest.residual));
     }
-    outcome.charts.push(chart);
-    outcome.run = record(step)?;
-    Ok(outcome)
+    Ok(curves)
+}
+
+fn add_docked(outcome: &mut Outcome, step: f64) -> Result<Vec<Residual>, LabError> {
+    let mut curves = Vec::new();
+    for (name, rig, points) in
+        [("ball in a drogue", build_drogue(step)?, 8.0), ("leaning probe", build_probe(step)?, 3.0)]
+    {
+        let rest = follow(rig, 0, 20.0)?;
+        add_balance(outcome, name, &rest);
+        outcome.figures.push(Figure::absolute(format!("{name}: points"), rest.points as f64, points, "1", 0.0));
+        curves.push((name.to_owned(), rest.residual));
+    }
+    Ok(curves)
 }
 
 /// What a scene at rest showed.
@@ -174,6 +201,44 @@ fn build_planes(planes: usize, slope: f64, mu: f64, step: f64) -> Result<Rig, La
     bench.pair("plane", "ball", law(mu));
     let mut rig = bench.build()?;
     rig.place(ball, [0.0, 0.0, RADIUS / slope.cos() + 1e-4], [0.0; 3]);
+    Ok(rig)
+}
+
+/// A body with this shape in a docking shape that stands in the world.
+fn build_docked(
+    (fixed, moving): (Docking, Shape),
+    robot: &RobotDescription,
+    mu: f64,
+    step: f64,
+) -> Result<Rig, LabError> {
+    let mut bench = Bench::new(EXPERIMENT.name, step).gravity([0.0, 0.0, -GRAVITY]);
+    let (name, pose_ls, shape) = ("port".to_owned(), Pose::identity(), Shape::Docking(fixed));
+    bench.spec.shapes.push(ShapeSpec { name, vehicle: None, link: 0, pose_ls, shape });
+    let body = bench.add_vehicle("probe", robot, Base::Free);
+    bench.add_shape(Some(body), 0, moving);
+    let bristle = Bristle { mu_static: mu, mu_kinetic: mu, stiffness: 1e5, damping: 100.0, ..Bristle::default() };
+    bench.pair("port", "probe", contact_law(1e5, 300.0, bristle));
+    bench.build()
+}
+
+/// Beside the axis, where one point bears it: it slides and rolls home.
+fn build_drogue(step: f64) -> Result<Rig, LabError> {
+    const HALF_ANGLE: f64 = 0.7;
+    let drogue = Docking::InnerCone { half_angle: HALF_ANGLE, depth: 0.14, throat_radius: 0.02, wall: 0.01 };
+    let seat = (RADIUS / HALF_ANGLE.cos() - 0.02) / HALF_ANGLE.tan() - 0.14;
+    let mut rig = build_docked((drogue, Shape::Ball { radius: RADIUS }), &ball_robot(MASS, RADIUS), 0.5, step)?;
+    rig.place(0, [2e-3, 1e-3, seat + 3e-3], [0.0; 3]);
+    Ok(rig)
+}
+
+/// Its lower end on the floor and at the wall, its side on the rim.
+fn build_probe(step: f64) -> Result<Rig, LabError> {
+    const TILT: f64 = -0.62;
+    let socket = Docking::InnerCylinder { radius: 0.06, depth: 0.1, wall: 0.012, floor: true };
+    let probe = Shape::Capsule { radius: 0.02, half_length: 0.1 };
+    let mut rig = build_docked((socket, probe), &cylinder_robot(MASS, 0.02, 0.24), 0.2, step)?;
+    let (sin, cos) = TILT.sin_cos();
+    rig.place(0, [0.04 + 0.1 * sin, 0.0, -0.08 + 0.1 * cos + 2e-4], [0.0, TILT, 0.0]);
     Ok(rig)
 }
 

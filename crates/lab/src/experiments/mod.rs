@@ -14,6 +14,7 @@ mod rolling_ball;
 mod slider_circle;
 mod slider_l;
 mod slider_line;
+mod sliding_docking;
 mod sliding_paths;
 mod smooth_sliding;
 mod stick_slip;

@@ -9,6 +9,7 @@
 //!
 //! Counted from where the bristle slides. The number of points that appear or vanish on the way must be zero.
 
+use super::sliding_docking;
 use super::sliding_paths::{Path, Piece};
 use crate::bench::{Bench, Rig};
 use crate::scene::{ball_robot, contact_law};
@@ -28,9 +29,9 @@ pub const EXPERIMENT: Experiment = Experiment {
 
 const STEP: f64 = 1e-3;
 const MU: f64 = 0.3;
-const DEPTH: f64 = 1e-4;
+pub(super) const DEPTH: f64 = 1e-4;
 /// Radius of the ball, the capsule and the cylinder that slide, m; half the length of the latter two.
-const SLIDER: f64 = 0.02;
+pub(super) const SLIDER: f64 = 0.02;
 const HALF: f64 = 0.03;
 /// Radius of the surfaces, m, and half their length.
 const RADIUS: f64 = 0.1;
@@ -39,13 +40,13 @@ const HALF_LENGTH: f64 = 0.06;
 const SMOOTH: f64 = 1e-3;
 
 /// A surface, a slider with its turn, and the way that the slider's origin takes.
-struct Case {
-    name: &'static str,
-    surface: Shape,
-    slider: Shape,
-    turned: [f64; 3],
-    path: Path,
-    points: usize,
+pub(super) struct Case {
+    pub(super) name: &'static str,
+    pub(super) surface: Shape,
+    pub(super) slider: Shape,
+    pub(super) turned: [f64; 3],
+    pub(super) path: Path,
+    pub(super) points: usize,
 }
 
 fn run(options: &Options) -> Result<Outcome, LabError> {
@@ -53,7 +54,7 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
     let mut outcome = Outcome::default();
     let mut chart =
         Chart::new("Second difference of the force", "share of the path", "|Δ²f|/|f|").logarithmic(false, true);
-    for case in cases() {
+    for case in cases().into_iter().chain(sliding_docking::cases()) {
         let found = slide(&case, steps)?;
         let name = case.name;
         // A coarser path has larger steps; the bound is for steps of at most 1e-3 of a radius.
@@ -71,7 +72,7 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
     Ok(outcome)
 }
 
-fn ball() -> Shape {
+pub(super) fn ball() -> Shape {
     Shape::Ball { radius: SLIDER }
 }
 
@@ -108,12 +109,12 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-fn line(from: [f64; 3], to: [f64; 3]) -> Piece {
+pub(super) fn line(from: [f64; 3], to: [f64; 3]) -> Piece {
     Piece::Line { from: from.into(), to: to.into() }
 }
 
 /// An arc in the plane y = 0 from `from`, about `centre`, by `angle` about +y (from +z towards +x).
-fn arc(centre: [f64; 3], from: [f64; 3], angle: f64) -> Piece {
+pub(super) fn arc(centre: [f64; 3], from: [f64; 3], angle: f64) -> Piece {
     let centre = Vec3::from(centre);
     Piece::Arc { centre, arm: Vec3::from(from) - centre, axis: Vec3::y(), angle }
 }

@@ -1,4 +1,4 @@
-//! A square peg in a slot: when a push jams it, and when it stays wedged after the push is gone.
+//! A square peg in a slot and a round one in a bore: when a push jams it, and when it stays wedged after the push is gone.
 //!
 //! Two-point contact as in [`crate::exact::peg`]: the peg leans, its tip's corner on one wall, the mouth's edge on its
 //! flank. A push P along the walls acts at an offset e from the peg's axis (two thrusters whose shares move), far off at
@@ -8,9 +8,9 @@
 
 use crate::bench::{Bench, Rig};
 use crate::exact::peg::Peg;
-use crate::scene::{box_robot, contact_law};
+use crate::scene::{box_robot, contact_law, cylinder_robot};
 use crate::{Chart, Experiment, Figure, LabError, Options, Outcome};
-use contact::Shape;
+use contact::{Docking, Shape};
 use friction::Bristle;
 use multibody::{Geometry, Visual};
 use sim::{ActuatorKind, Base, ShapeSpec, World};
@@ -23,6 +23,8 @@ pub const EXPERIMENT: Experiment =
 const HALF_WIDTH: f64 = 0.02;
 const CLEARANCE: f64 = 1e-4;
 const HALF_LENGTH: f64 = 0.06;
+/// By which the bore's mouth is rounded, m: half its wall.
+const LIP: f64 = 5e-3;
 const PUSH: f64 = 20.0;
 /// Half the distance between the thrusters, m: larger than every offset.
 const SPAN: f64 = 1.0;
@@ -31,31 +33,44 @@ const STIFFNESS: f64 = 1e7;
 fn run(options: &Options) -> Result<Outcome, LabError> {
     let step = options.step.unwrap_or(1e-3);
     let mut outcome = Outcome::default();
-    let cases: &[(f64, f64)] = if options.quick {
-        &[(0.03, 0.2), (0.03, 0.5)]
+    let (slot, bore): (&[_], &[_]) = if options.quick {
+        (&[(0.03, 0.2), (0.03, 0.5)], &[(0.03, 0.3)])
     } else {
-        &[(0.02, 0.1), (0.03, 0.1), (0.04, 0.2), (0.03, 0.2), (0.02, 0.2), (0.03, 0.3), (0.03, 0.5), (0.05, 0.5)]
+        let slot =
+            &[(0.02, 0.1), (0.03, 0.1), (0.04, 0.2), (0.03, 0.2), (0.02, 0.2), (0.03, 0.3), (0.03, 0.5), (0.05, 0.5)];
+        (slot, &[(0.03, 0.2), (0.03, 0.3), (0.04, 0.5)])
     };
-    let mut found = Vec::new();
-    for &(depth, mu) in cases {
-        let peg = peg(depth, mu);
-        let exact = peg.calc_jamming_offset(0.0, HALF_LENGTH);
-        let measured = measure_offset(&peg, 0.0, exact, step)?;
-        let name = format!("e*/r at l/2r = {}, μ = {mu}", depth / (2.0 * HALF_WIDTH));
-        let (measured, exact) = (measured / HALF_WIDTH, exact / HALF_WIDTH);
-        outcome.figures.push(Figure::relative(name, measured, exact, "1", 1e-2));
-        found.push((peg.calc_lambda(), measured));
-    }
+    let square = add_offsets(&mut outcome, ("square peg", slot, 0.0), step)?;
+    let round = add_offsets(&mut outcome, ("round peg", bore, LIP), step)?;
     let line = (0..=55).map(|k| 0.1 * f64::from(k)).map(|x| (x, x)).collect();
     outcome.charts.push(
         Chart::new("Offset at which a pushed peg jams", "λ = l/(2 r μ)", "e*/r")
             .theory("e* = λ r", line)
-            .marks("measured", found),
+            .marks("square peg, slot", square)
+            .marks("round peg, bore with a rounded mouth", round),
     );
     add_lateral(&mut outcome, step, options)?;
     add_wedging(&mut outcome, step)?;
     outcome.run = record(step)?;
     Ok(outcome)
+}
+
+/// Offsets e*/r over λ for pegs of (depth, μ) in a mouth that is rounded by `lip`.
+fn add_offsets(
+    outcome: &mut Outcome,
+    (name, cases, lip): (&str, &[(f64, f64)], f64),
+    step: f64,
+) -> Result<Vec<(f64, f64)>, LabError> {
+    let mut found = Vec::new();
+    for &(depth, mu) in cases {
+        let peg = Peg { lip, ..peg(depth, mu) };
+        let exact = peg.calc_jamming_offset(0.0, HALF_LENGTH);
+        let measured = measure_offset(&peg, 0.0, exact, step)? / HALF_WIDTH;
+        let name = format!("{name}: e*/r at l/2r = {}, μ = {mu}", depth / (2.0 * HALF_WIDTH));
+        outcome.figures.push(Figure::relative(name, measured, exact / HALF_WIDTH, "1", 1e-2));
+        found.push((peg.calc_lambda(), measured));
+    }
+    Ok(found)
 }
 
 fn peg(depth: f64, mu: f64) -> Peg {
@@ -67,11 +82,20 @@ fn peg(depth: f64, mu: f64) -> Peg {
 fn build(peg: &Peg, step: f64) -> Result<Rig, LabError> {
     let mut bench = Bench::new(EXPERIMENT.name, step);
     let half = Vec3::new(HALF_WIDTH, 0.02, HALF_LENGTH);
-    let body = bench.add_vehicle("peg", &box_robot(1.0, half.into()), Base::Free);
-    for side in [-1.0, 1.0] {
-        add_wall(&mut bench, side * (peg.bore_half_width + 0.05));
+    let is_round = peg.lip > 0.0;
+    let robot = if is_round { cylinder_robot(1.0, HALF_WIDTH, 2.0 * HALF_LENGTH) } else { box_robot(1.0, half.into()) };
+    let body = bench.add_vehicle("peg", &robot, Base::Free);
+    if is_round {
+        let (radius, depth, wall) = (peg.bore_half_width, 0.2, 2.0 * peg.lip);
+        let shape = Shape::Docking(Docking::InnerCylinder { radius, depth, wall, floor: false });
+        let (name, pose_ls) = ("world".to_owned(), Pose::identity());
+        bench.spec.shapes.push(ShapeSpec { name, vehicle: None, link: 0, pose_ls, shape });
+        bench.add_shape(Some(body), 0, Shape::Cylinder { radius: HALF_WIDTH, half_length: HALF_LENGTH });
+    } else {
+        add_wall(&mut bench, -peg.bore_half_width - 0.05);
+        add_wall(&mut bench, peg.bore_half_width + 0.05);
+        bench.add_shape(Some(body), 0, Shape::Cuboid { half_extents: half });
     }
-    bench.add_shape(Some(body), 0, Shape::Cuboid { half_extents: half });
     let bristle =
         Bristle { mu_static: peg.mu, mu_kinetic: peg.mu, stiffness: STIFFNESS, damping: 1e3, ..Bristle::default() };
     bench.pair("world", "peg", contact_law(STIFFNESS, 1e3, bristle));
