@@ -1,5 +1,5 @@
 //! `[[mechanism]]` tables: what they are refused for, and what is settled on the world at t = 0.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use sim::{MechanismKind, MechanismStatus};
 

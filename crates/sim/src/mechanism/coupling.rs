@@ -128,12 +128,12 @@ impl Coupling {
     /// Evaluates the laws at the gains, and draws the lines for the next solve.
     fn eval(&mut self, model: &Model, gain: &Rows) {
         let kind = &model.mechanisms[self.index].kind;
-        for i in 0..self.at.n {
-            let next = self.rate[i] + gain[i] + self.carried[i];
+        for (i, gain) in gain.iter().enumerate().take(self.at.n) {
+            let next = self.rate[i] + gain + self.carried[i];
             let e = self.base[i] + self.beta * next;
             let law = kind.eval(i, e, (1.0 - self.theta) * self.rate[i] + self.theta * next);
             self.slope[i] = self.beta * law.stiffness + self.theta * law.damping;
-            self.line[i] = law.force + self.slope[i] * gain[i];
+            self.line[i] = law.force + self.slope[i] * gain;
             self.law[i] = law;
         }
     }
@@ -145,10 +145,10 @@ impl Coupling {
 
     /// Whether lines and laws agree, measured by the largest of the rotations and of the translations.
     fn holds(&self, gain: &Rows) -> bool {
-        let groups: &[std::ops::Range<usize>] = if self.at.n == MAX_ROWS { &[0..3, 3..6] } else { &[0..1] };
-        groups.iter().all(|group| {
+        let groups = if self.at.n == MAX_ROWS { [0..3, 3..6] } else { [0..self.at.n, 0..0] };
+        groups.into_iter().all(|group| {
             let (mut miss, mut size, mut rounding) = (0.0_f64, 0.0_f64, FORCE_FLOOR);
-            for i in group.clone() {
+            for i in group {
                 let (law, on_line) = (&self.law[i], self.line[i] - self.slope[i] * gain[i]);
                 miss = miss.max((law.force - on_line).abs());
                 size = size.max(law.force.abs());
@@ -217,8 +217,8 @@ pub(crate) fn update_carried(model: &Model, ws: &mut Workspace) {
     for k in 0..ws.couplings.len() {
         let carried = ws.couplings[k].calc_carried(model, ws, false);
         let coupling = &mut ws.couplings[k];
-        for i in 0..coupling.at.n {
-            coupling.line[i] -= coupling.slope[i] * (carried[i] - coupling.carried[i]);
+        for (i, carried) in carried.iter().enumerate() {
+            coupling.line[i] -= coupling.slope[i] * (carried - coupling.carried[i]);
         }
         coupling.carried = carried;
     }
@@ -281,8 +281,8 @@ pub(crate) fn laws_hold(model: &Model, ws: &mut Workspace) -> bool {
         let before = coupling;
         coupling.eval(model, &gain);
         hold &= Coupling { law: coupling.law, ..before }.holds(&gain);
-        for i in 0..coupling.at.n {
-            coupling.force[i] = before.line[i] - before.slope[i] * gain[i];
+        for (i, gain) in gain.iter().enumerate() {
+            coupling.force[i] = before.line[i] - before.slope[i] * gain;
         }
         ws.couplings[k] = coupling;
     }
@@ -297,9 +297,9 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         add_impulse(model, state, ws, (coupling.bodies[0], &coupling.at.point), (&-impulse, &-about_origin));
         add_impulse(model, state, ws, (coupling.bodies[1], &coupling.at.point), (&impulse, &about_origin));
         let gain = coupling.calc_gain(ws);
-        for i in 0..coupling.at.n {
+        for (i, gain) in gain.iter().enumerate().take(coupling.at.n) {
             let force = h * coupling.force[i];
-            state.account.mechanism_work += force * (coupling.rate[i] + 0.5 * gain[i]);
+            state.account.mechanism_work += force * (coupling.rate[i] + 0.5 * gain);
             state.account.actuator_work -= force * coupling.at.rest_rate[i];
             state.account.mechanism_loss += h * coupling.law[i].loss;
         }
