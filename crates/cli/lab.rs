@@ -150,12 +150,19 @@ fn print((experiment, outcome): &Answer) {
 fn report_on_all(arguments: &Arguments, options: &Options) -> anyhow::Result<Status> {
     let target = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out/lab-report"));
     let folder = OutputFolder::create(&target)?;
-    let mut answers = Vec::new();
+    let (mut answers, mut first_failure, mut diverged) = (Vec::new(), None, false);
     for experiment in lab::catalogue().into_iter().filter(|e| !lacks_recordings(*e, options)) {
         let started = Instant::now();
-        let Some(answer) = answer(experiment, options)? else { return Ok(Status::Diverged) };
+        // One experiment that fails takes nothing from the report of the others.
+        match answer(experiment, options) {
+            Ok(Some(answer)) => answers.push(answer),
+            Ok(None) => diverged = true,
+            Err(error) => {
+                eprintln!("error: {}: {error:#}", experiment.name);
+                first_failure.get_or_insert(error.context(format!("{} could not be run", experiment.name)));
+            }
+        }
         eprintln!("{} ({:.1} s)", experiment.name, started.elapsed().as_secs_f64());
-        answers.push(answer);
     }
     let (table, figures) = (report::markdown(&answers), report::figures_json(&answers));
     record::write_file(&folder.file("report.md"), (table.clone() + &report::notes_markdown(&answers)).as_bytes())?;
@@ -167,5 +174,9 @@ fn report_on_all(arguments: &Arguments, options: &Options) -> anyhow::Result<Sta
     } else {
         println!("{table}\n{}\nThe charts are in {}/report.html", report::count(&answers), place.display());
     }
-    Ok(status(&answers))
+    match first_failure {
+        Some(error) => Err(error),
+        None if diverged => Ok(Status::Diverged),
+        None => Ok(status(&answers)),
+    }
 }
