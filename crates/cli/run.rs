@@ -145,6 +145,16 @@ pub(crate) fn scene(mission: &Mission) -> Scene {
         vehicles: vehicles.map(|(v, robot)| SceneVehicle::from_robot(&v.name, robot)).collect(),
         ..Scene::default()
     };
+    for (on, visual) in scenario::docking_visuals(&mission.scenario) {
+        match on.split_once('/') {
+            None => scene.fixtures.push(visual),
+            Some((vehicle, link)) => {
+                let vehicles = scene.vehicles.iter_mut().filter(|v| v.name == vehicle);
+                let link = vehicles.flat_map(|v| &mut v.links).find(|l| l.name == link);
+                link.into_iter().for_each(|l| l.visuals.push(visual.clone()));
+            }
+        }
+    }
     if let Strategy::TrackAndGrasp(spec) = &mission.scenario.strategy {
         let index = |name: &str| name.split_once('/').and_then(|(v, l)| scene.link_index(v, l));
         let (tool, grapple) = (index(&spec.tool_frame), index(&spec.grapple_frame));

@@ -4,8 +4,9 @@
 //! boxes, cylinders and hulls the way out is through the nearest of the faces that the sample looks at: not sideways
 //! through an edge, nor through the seam to the next part of a compound.
 //!
-//! Of a mesh the nearest triangle answers, and the sample's own normal m says on which side
-//! it is: ahead along m the surface is still to come, behind it the sample is through. So open meshes need no inside.
+//! Of a mesh the nearest triangle answers. An open one has no inside: there the sample's own normal m says on which side it
+//! is, as ahead along m the surface is still to come and behind the sample is through. A closed one is a solid, and its
+//! triangles look outward.
 
 use crate::analytic::{Raw, plane_ball, swapped};
 use crate::bed::Bed;
@@ -105,10 +106,14 @@ fn ask(part: &Part, frame: &Frame, (point, normal): (&Vec3, &Vec3), margin: f64)
             None => return Some(convex_ball(convex, frame, point, 0.0)),
         },
         Solid::HalfSpace(_) => return Some(plane_ball(frame, point, 0.0)),
+        Solid::Docking(sheet, ..) => {
+            let near = sheet.nearest(&local);
+            (near.normal, near.distance - sheet.radius)
+        }
         Solid::Bed(_) => return None,
         Solid::Other(twin, _) => match (twin.shape.as_convex_polyhedron(), twin.shape.as_trimesh()) {
             (Some(hull), _) => asked.on_hull(hull)?,
-            (_, Some(mesh)) => asked.on_mesh(mesh, reach)?,
+            (_, Some(mesh)) => asked.on_mesh(mesh, part.closed, reach)?,
             _ => return None,
         },
     };
@@ -169,14 +174,23 @@ impl Asked {
         if distance <= gap * (1.0 + OVER_FACE) { Some((normal, gap)) } else { Some((away / distance, distance)) }
     }
 
-    fn on_mesh(&self, mesh: &TriMesh, reach: f64) -> Option<(Vec3, f64)> {
+    fn on_mesh(&self, mesh: &TriMesh, closed: bool, reach: f64) -> Option<(Vec3, f64)> {
         let (near, (triangle, location)) =
             mesh.project_local_point_and_get_location_with_max_dist(to_parry(&self.point), false, reach)?;
         let away = self.point - from_parry(near.point);
         let distance = away.norm();
-        let on_face = matches!(location, TrianglePointLocation::OnFace(..));
-        let normal =
-            if on_face || distance < AT_EDGE { from_parry(mesh.triangle(triangle).normal()?) } else { away / distance };
+        let outward = from_parry(mesh.triangle(triangle).normal()?);
+        let on_face = matches!(location, TrianglePointLocation::OnFace(..)) || distance < AT_EDGE;
+        if closed && on_face {
+            return Some((outward, outward.dot(&away)));
+        }
+        if closed {
+            // Near an edge: inside where the triangle and the sample's normal both say so.
+            let inside = outward.dot(&away) < 0.0 && away.dot(&self.normal) > 0.0;
+            let side = if inside { -1.0 } else { 1.0 };
+            return Some((away * (side / distance), side * distance));
+        }
+        let normal = if on_face { outward } else { away / distance };
         // The surface's normal looks against the sample's.
         let normal = if normal.dot(&self.normal) > 0.0 { -normal } else { normal };
         Some((normal, normal.dot(&away)))

@@ -1,9 +1,9 @@
 //! A closed mesh as its decomposition asks it: what is inside, and how far another surface is from its own.
 
-use crate::ContactError;
 use crate::decompose::Hull;
 use crate::decompose_cell::{Cell, Plane};
 use crate::scene::{from_parry, to_parry};
+use crate::{ContactError, Shape};
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::{ConvexPolyhedron, TriMesh};
 use spatial::Vec3;
@@ -175,6 +175,11 @@ fn weld(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>)
     let welded = triangles.iter().map(|t| t.map(|i| first[i as usize]));
     let triangles = welded.filter(|[a, b, c]| a != b && b != c && c != a).collect();
     (vertices.to_vec(), triangles)
+}
+
+/// Whether a shape is a mesh with a triangle on each side of every edge.
+pub(crate) fn is_closed_mesh(shape: &Shape) -> bool {
+    matches!(shape, Shape::TriMesh { vertices, triangles } if is_closed(&weld(vertices, triangles).1))
 }
 
 /// Whether every directed edge has its opposite.

@@ -6,6 +6,7 @@
 use crate::analytic::{Raw, ball_ball, plane_ball, plane_cuboid, swapped};
 use crate::bed_points::{BedBuffer, is_bed};
 use crate::convex::{Convex, Core};
+use crate::docking::{Body, DockingBuffer};
 use crate::faceted::FacetBuffer;
 use crate::manifold::{add_nearest, mix};
 use crate::primitive::{PrimitiveBuffer, convex_ball};
@@ -24,6 +25,7 @@ pub struct Detector {
     raw: Vec<Raw>,
     reduction: Reduction,
     primitives: PrimitiveBuffer,
+    docking: DockingBuffer,
     facets: FacetBuffer,
     beds: BedBuffer,
     narrow: u64,
@@ -53,6 +55,7 @@ impl Detector {
             raw: Vec::with_capacity(64),
             reduction: Reduction::default(),
             primitives: PrimitiveBuffer::default(),
+            docking: DockingBuffer::default(),
             facets: FacetBuffer::default(),
             beds: BedBuffer::default(),
             narrow: 0,
@@ -190,6 +193,12 @@ impl Detector {
             (Solid::Other(..), _) | (_, Solid::Other(..)) => {
                 return self.facets.add_points((a, frame_a), (b, frame_b), margin, &mut self.raw);
             }
+            (Solid::Docking(..), _) | (_, Solid::Docking(..)) => {
+                if let (Some(a), Some(b)) = (Body::of(&a.solid, frame_a), Body::of(&b.solid, frame_b)) {
+                    self.docking.add_points(&a, &b, margin, &mut self.raw);
+                }
+                return;
+            }
         };
         if one.gap < margin {
             self.raw.push(one);
@@ -215,6 +224,8 @@ impl Detector {
 fn twin_of(solid: &Solid) -> Option<&Twin> {
     match solid {
         Solid::Ball(_) | Solid::Bed(_) => None,
-        Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Other(twin, _) => Some(twin),
+        Solid::Primitive(_, twin) | Solid::HalfSpace(twin) | Solid::Other(twin, _) | Solid::Docking(_, twin, _) => {
+            Some(twin)
+        }
     }
 }

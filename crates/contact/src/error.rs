@@ -13,6 +13,20 @@ pub enum ContactError {
         /// The number given, m.
         value: f64,
     },
+    /// An angle of a docking shape is out of its range.
+    #[error(
+        "collider \"{collider}\": {quantity} is {value_deg}°; it must be greater than 0° and less than {below_deg}°"
+    )]
+    Angle {
+        /// Name of the collider.
+        collider: String,
+        /// Which angle.
+        quantity: &'static str,
+        /// The angle given, degrees.
+        value_deg: f64,
+        /// What it must stay below, degrees.
+        below_deg: f64,
+    },
     /// A vertex or the pose is NaN or infinite.
     #[error("collider \"{collider}\": {what} is not a finite number; check the file that it was read from")]
     NotFinite {

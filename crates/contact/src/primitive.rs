@@ -209,7 +209,7 @@ fn out_of(convex: &Convex, p: &Vec3) -> Option<(Vec3, f64)> {
 }
 
 /// Outward normal and (negative) distance of the surface nearest to `p` inside the core.
-fn way_out(core: &Core, p: &Vec3) -> (Vec3, f64) {
+pub(crate) fn way_out(core: &Core, p: &Vec3) -> (Vec3, f64) {
     let across = p.xy().norm();
     let radial = if across > 0.0 { Vec3::new(p.x / across, p.y / across, 0.0) } else { Vec3::x() };
     match core {

@@ -2,6 +2,7 @@
 
 use crate::convex::{Convex, Core};
 use crate::cylinder::Cylinder;
+use crate::docking::{Sheet, Tessellation, rank_of};
 use crate::faceted::Faceted;
 use crate::{Collider, ContactError, Shape};
 use parry3d_f64::math::{Pose as ParryPose, Vector};
@@ -33,6 +34,7 @@ pub(crate) enum Solid {
     Ball(f64),
     Primitive(Convex, Twin),
     HalfSpace(Twin),
+    Docking(Sheet, Twin, Faceted),
     Other(Twin, Faceted),
     Bed(crate::Bed),
 }
@@ -59,6 +61,8 @@ pub(crate) struct Part {
     /// Half extents of the piece's bounding box about `centre`, piece axes; infinite for a half-space.
     pub(crate) half: Vec3,
     pub(crate) centre: Vec3,
+    /// Whether it is a mesh with an inside.
+    pub(crate) closed: bool,
 }
 
 /// Colliders and the pairs of them that are looked at.
@@ -131,9 +135,19 @@ fn add_parts(collider: &Collider, shape: &Shape, pose: &Pose, parts: &mut Vec<Pa
             .iter()
             .try_for_each(|(child_pose, child)| add_parts(collider, child, &(pose * child_pose), parts));
     }
+    if let Shape::Docking(docking) = shape {
+        for sheet in docking.sheets(rank_of(&collider.name)) {
+            let (half, centre) = sheet.bounds();
+            let (twin, faceted) = facets_of_sheet(collider, &sheet)?;
+            let solid = Solid::Docking(sheet, twin, faceted);
+            parts.push(Part { frame_bp: Frame::from(pose), solid, half, centre, closed: false });
+        }
+        return Ok(());
+    }
     let solid = solid_of(collider, shape)?;
     let (half, centre) = bounds(&solid);
-    parts.push(Part { frame_bp: Frame::from(pose), solid, half, centre });
+    let closed = crate::decompose_measure::is_closed_mesh(shape);
+    parts.push(Part { frame_bp: Frame::from(pose), solid, half, centre, closed });
     Ok(())
 }
 
@@ -169,9 +183,22 @@ fn solid_of(collider: &Collider, shape: &Shape) -> Result<Solid, ContactError> {
             known.ok_or(ContactError::DegenerateMesh { collider, triangles })?
         }
         Shape::Bed(bed) => Solid::Bed(bed.clone()),
-        // Its children are pieces of their own; none is left.
-        Shape::Compound(_) => Solid::Ball(0.0),
+        // Their pieces are parts of their own; none is left.
+        Shape::Compound(_) | Shape::Docking(_) => Solid::Ball(0.0),
     })
+}
+
+/// A sheet in triangles, for what knows no other answer.
+/// A sheet as a tessellation, for pairs that ask no closed form: parry's, and hulls and meshes.
+fn facets_of_sheet(collider: &Collider, sheet: &Sheet) -> Result<(Twin, Faceted), ContactError> {
+    let mut mesh = Tessellation::default();
+    mesh.add(sheet);
+    let triangles = mesh.triangles.len();
+    let known = Faceted::mesh(&mesh.vertices, &mesh.triangles).and_then(|(points, corners, mesh)| {
+        let twin = SharedShape::trimesh(points.iter().map(to_parry).collect(), corners).ok()?;
+        Some((Twin::new(twin), mesh))
+    });
+    known.ok_or_else(|| ContactError::DegenerateMesh { collider: collider.name.clone(), triangles })
 }
 
 fn bounds(solid: &Solid) -> (Vec3, Vec3) {
@@ -179,6 +206,7 @@ fn bounds(solid: &Solid) -> (Vec3, Vec3) {
         Solid::Ball(radius) => (Vec3::repeat(*radius), Vec3::zeros()),
         Solid::Primitive(convex, _) => (convex.half_extents(), Vec3::zeros()),
         Solid::HalfSpace(_) => (Vec3::repeat(f64::INFINITY), Vec3::zeros()),
+        Solid::Docking(sheet, ..) => sheet.bounds(),
         Solid::Bed(bed) => {
             let (centre, half) = bed.bounds();
             (half, centre)

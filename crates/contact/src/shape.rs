@@ -1,6 +1,6 @@
 //! Shapes as a file or a builder describes them, and their checks.
 
-use crate::{Bed, ContactError};
+use crate::{Bed, ContactError, Docking};
 use spatial::{Pose, Vec3};
 
 /// A collision shape in its own frame S; lengths in m.
@@ -46,6 +46,8 @@ pub enum Shape {
     },
     /// Samples of a face, each a contact point of its own with a share of the pair's law.
     Bed(Bed),
+    /// A drogue, bore, capture ring or guide petal.
+    Docking(Docking),
     /// Several shapes, each with its pose in S.
     Compound(Vec<(Pose, Shape)>),
 }
@@ -84,6 +86,7 @@ impl Collider {
                 self.check_size("half length", *half_length)
             }
             Shape::HalfSpace => Ok(()),
+            Shape::Docking(docking) => docking.check(&self.name),
             Shape::ConvexHull { vertices } => {
                 self.check_vertices(vertices)?;
                 self.check_span(vertices)

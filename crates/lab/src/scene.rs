@@ -12,6 +12,7 @@ use crate::bench::{Bench, Rig};
 use contact::{Normal, NormalLaw, Shape};
 use friction::{Bristle, Friction};
 use multibody::{Geometry, Inertial, JointDescription, JointKind, LinkDescription, RobotDescription, Visual};
+use record::Trail;
 use sim::{Base, PairLaw};
 use spatial::{Mat3, Pose, Vec3};
 
@@ -137,6 +138,8 @@ pub fn gantry_block(experiment: &'static str, mass: f64, law: PairLaw, step: f64
     let mut bench = Bench::new(experiment, step).gravity([0.0, 0.0, -GRAVITY]);
     bench.add_floor();
     let gantry = bench.add_vehicle("block", &gantry_robot(mass, BLOCK), Base::Fixed);
+    let point_l = Vec3::new(0.0, 0.0, -BLOCK[2]);
+    bench.scene.trails.push(Trail { name: "block".to_owned(), link: GANTRY_BLOCK, point_l });
     bench.add_shape(Some(gantry), GANTRY_BLOCK, Shape::Cuboid { half_extents: BLOCK.into() });
     bench.pair("floor", "block", law);
     bench

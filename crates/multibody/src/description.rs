@@ -108,6 +108,55 @@ pub enum Geometry {
     },
     /// Triangles, scale applied.
     Mesh(Arc<Mesh>),
+    /// A docking shape, named by softdock's own tag; only of collisions.
+    Docking(DockingGeometry),
+}
+
+/// A docking shape, in its own frame; lengths in m, angles in rad. The contact crate says what each is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DockingGeometry {
+    /// The inside of a cone frustum: mouth in z = 0, opens to +z.
+    InnerCone {
+        /// Angle between wall and axis.
+        half_angle: f64,
+        /// From mouth to throat along the axis.
+        depth: f64,
+        /// Inner radius at the throat.
+        throat_radius: f64,
+        /// Thickness of the wall.
+        wall: f64,
+    },
+    /// The inside of a tube: mouth in z = 0, opens to +z.
+    InnerCylinder {
+        /// Inner radius.
+        radius: f64,
+        /// From the mouth to the other end.
+        depth: f64,
+        /// Thickness of the wall.
+        wall: f64,
+        /// Whether the other end is closed.
+        floor: bool,
+    },
+    /// A torus about z.
+    Ring {
+        /// Of the circle in z = 0.
+        major_radius: f64,
+        /// Of the cross-section.
+        minor_radius: f64,
+    },
+    /// The sector of a cone frustum, a rounded plate centred on +x with its base in z = 0.
+    Petal {
+        /// At z = 0.
+        base_radius: f64,
+        /// At the tip.
+        tip_radius: f64,
+        /// Of the tip.
+        height: f64,
+        /// Half the angle it spans about z.
+        half_sector: f64,
+        /// Of the plate.
+        thickness: f64,
+    },
 }
 
 /// A triangle mesh, in metres, in the shape's frame.

@@ -12,7 +12,8 @@ mod urdf;
 
 pub use aba::Drive;
 pub use description::{
-    Collision, Geometry, Inertial, JointDescription, JointKind, LinkDescription, Mesh, Mimic, RobotDescription, Visual,
+    Collision, DockingGeometry, Geometry, Inertial, JointDescription, JointKind, LinkDescription, Mesh, Mimic,
+    RobotDescription, Visual,
 };
 pub use dynamics::{
     Accelerations, Dynamics, add_gravity, calc_centroidal_momentum, calc_kinetic_energy, calc_locked_inertia,

@@ -31,7 +31,7 @@ pub use csv_file::{encode_csv, parse_csv, read_csv, write_csv};
 pub use error::RecordError;
 pub use folder::{OutputFolder, SUMMARY_FORMAT, write_file};
 pub use log::{ContactSample, Event, EventKind, Log, Meta, Sample};
-pub use mesh::{TriangleMesh, triangulate};
+pub use mesh::{TriangleMesh, docking_of_geometry, triangulate};
 pub use observe::{Probe, Recorder, RecorderPlan, SampleSink};
 pub use parquet_file::{SIGNALS_FORMAT, encode_parquet, read_parquet, write_parquet};
 pub use scene::{Scene, SceneLink, SceneVehicle, Trail};

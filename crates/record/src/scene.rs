@@ -1,6 +1,6 @@
 //! What is to be seen: the visual shapes of every link, and where to look.
 
-use multibody::{RobotDescription, Visual};
+use multibody::{Geometry, LinkDescription, RobotDescription, Visual};
 use spatial::Vec3;
 
 /// Everything visible, without poses: those come with each sample, in the order of [`Scene::links`].
@@ -49,9 +49,20 @@ impl SceneVehicle {
     /// A vehicle of this name with the visual shapes of a robot.
     pub fn from_robot(name: impl Into<String>, robot: &RobotDescription) -> Self {
         let links = robot.links.iter();
-        let links = links.map(|link| SceneLink { name: link.name.clone(), visuals: link.visuals.clone() });
+        let links = links.map(|link| SceneLink { name: link.name.clone(), visuals: visuals_of(link) });
         Self { name: name.into(), links: links.collect() }
     }
+}
+
+/// What a link shows; where it shows nothing, the docking shapes that touch, which no other reader draws.
+fn visuals_of(link: &LinkDescription) -> Vec<Visual> {
+    if !link.visuals.is_empty() {
+        return link.visuals.clone();
+    }
+    let docking = link.collisions.iter().filter(|c| matches!(c.geometry, Geometry::Docking(_)));
+    docking
+        .map(|c| Visual { name: c.name.clone(), pose_ls: c.pose_ls, geometry: c.geometry.clone(), rgba: None })
+        .collect()
 }
 
 impl Scene {

@@ -35,7 +35,7 @@ fn block_sinks_as_deep_as_the_whole_face_is_stiff() {
     ] {
         settles_at(&format!("{kind}\n{DOWN}"), depth, touching);
     }
-    // All six faces of the block: its underside is a quarter of... the reference area is given, so it is the face's own.
+    // All six faces of the block have samples; its underside alone, of 0.04 m², is pressed.
     settles_at("kind = \"surface-bed\"\nof = \"block\"\nspacing_m = 0.025\nreference_area_m2 = 0.04", 1e-4, 64);
 }
 
@@ -53,14 +53,14 @@ fn settles_at(bed: &str, depth: f64, touching: usize) {
 #[test]
 fn faults_of_beds_are_named_with_their_place() {
     for (bed, fragments) in [
-        ("kind = \"disc-bed\"\nradius_m = -0.1\nsamples = 100", ["beds.toml:16:", "must be greater than 0"].as_slice()),
-        ("kind = \"disc-bed\"\nradius_m = 0.1\nsamples = 2", &["beds.toml:17:", "must be at least 6"]),
+        ("kind = \"disc-bed\"\nradius_m = -0.1\nsamples = 100", ["beds.toml:18:", "must be greater than 0"].as_slice()),
+        ("kind = \"disc-bed\"\nradius_m = 0.1\nsamples = 2", &["beds.toml:19:", "must be at least 6"]),
         ("kind = \"disc-bed\"\nradius_m = 0.1", &["`samples`"]),
         ("kind = \"ring-bed\"\ninner_radius_m = 0.2\nouter_radius_m = 0.1\nsamples = 64", &["must not exceed"]),
         ("kind = \"ring-bed\"\ninner_radius_m = 0.1\nouter_radius_m = 0.1\nsamples = 64", &["block/foot", "bed"]),
         (
             "kind = \"surface-bed\"\nof = \"blok\"\nspacing_m = 0.02",
-            &["beds.toml:16:", "\"blok\"; did you mean \"block\"?"],
+            &["beds.toml:18:", "\"blok\"; did you mean \"block\"?"],
         ),
         ("kind = \"disk-bed\"\nradius_m = 0.1\nsamples = 64", &["did you mean \"disc-bed\"?"]),
     ] {

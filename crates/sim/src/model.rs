@@ -398,6 +398,7 @@ fn calc_bounding_radius(shape: &contact::Shape) -> f64 {
         Shape::Capsule { radius, half_length } => radius + half_length,
         Shape::HalfSpace => 0.0,
         Shape::Bed(bed) => bed.samples.iter().map(|s| s.point.norm()).fold(0.0, f64::max),
+        Shape::Docking(docking) => docking.calc_bounding_radius(),
         Shape::ConvexHull { vertices } | Shape::TriMesh { vertices, .. } => farthest(vertices),
         Shape::Compound(parts) => {
             parts.iter().map(|(pose, s)| pose.translation.vector.norm() + calc_bounding_radius(s)).fold(0.0, f64::max)

@@ -72,7 +72,8 @@ impl Side<'_> {
             Solid::Other(_, Faceted::Hull(piece)) => Side::Hull(piece),
             Solid::Ball(radius) => Side::Other(Piece::ball(*radius)),
             Solid::Primitive(convex, _) => Side::Other(Piece::primitive(convex)),
-            Solid::Bed(_) => return None,
+            Solid::Docking(_, _, Faceted::Mesh(mesh)) => Side::Mesh(mesh),
+            Solid::Bed(_) | Solid::Docking(..) => return None,
         })
     }
 

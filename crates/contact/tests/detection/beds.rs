@@ -1,5 +1,7 @@
 //! Beds: areas, moments of area, and the foundation that their samples make together.
 
+#![allow(clippy::print_stdout)]
+
 use crate::support::*;
 use contact::{Bed, ContactError};
 use std::f64::consts::{PI, TAU};
@@ -190,6 +192,16 @@ fn sheet_met_from_behind_pushes_a_sample_back_to_the_side_it_came_from() {
 fn samples_that_look_away_and_other_beds_are_not_met() {
     let mut back = over_floor(Bed::disc(0.05, 20));
     assert!(back.find(&at(0.0, 0.0, 0.0), &at(0.0, 0.0, -DEPTH), 1e-3).is_empty());
+    // Under a table and looking down, it is the floor's business, not the table's.
+    let (vertices, triangles) = closed_box(0.1);
+    for table in [cuboid(0.1, 0.1, 0.1), hull(0.1), Shape::TriMesh { vertices, triangles }] {
+        let mut two = Two::new(table, Shape::Bed(Bed::disc(0.15, 200)));
+        for z in [-0.101, -0.1 - DEPTH, -0.1 + DEPTH, 0.0, 0.09] {
+            let touching = two.find_touching(&at(0.0, 0.0, 0.0), &face_down(Vec3::zeros(), z));
+            assert!(touching.is_empty() || z > -0.1, "at {z}: {touching:?}");
+            assert!(touching.iter().all(|p| p.normal_w.z > 0.9), "at {z}");
+        }
+    }
     let mut beds = Two::new(Shape::Bed(Bed::disc(0.05, 20)), Shape::Bed(Bed::disc(0.05, 20)));
     assert!(beds.find(&at(0.0, 0.0, 0.0), &face_down(Vec3::zeros(), -DEPTH), 1e-3).is_empty());
 }

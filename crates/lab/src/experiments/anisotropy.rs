@@ -29,7 +29,7 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
     let (mut sizes, mut directions, mut worst) = (Vec::new(), Vec::new(), (0.0_f64, 0.0_f64));
     for k in 0..count {
         let phi = 2.0 * std::f64::consts::PI * (f64::from(k) + 0.25) / f64::from(count);
-        let (measured, exact) = (lead(phi, step)?, calc_force(phi));
+        let (measured, exact) = (lead(phi, step)?.0, calc_force(phi));
         worst.0 = worst.0.max(measured.angle(&exact));
         worst.1 = worst.1.max((measured.norm() / exact.norm() - 1.0).abs());
         sizes.push((phi.to_degrees(), measured.norm()));
@@ -48,7 +48,8 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
             .theory("ellipse", fine().map(|d| (d, calc_force(d.to_radians()).norm())).collect())
             .marks("measured", sizes),
     ];
-    Ok(Outcome { figures, charts, ..Outcome::default() })
+    let run = lead(0.7, step)?.1;
+    Ok(Outcome { figures, charts, run, notes: Vec::new() })
 }
 
 /// From −velocity to the force, °; both along and across the grain.
@@ -66,8 +67,8 @@ fn calc_force(phi: f64) -> Vec3 {
     -GRAVITY * Vec3::new(a * a * cos, b * b * sin, 0.0) / size
 }
 
-/// Friction along and across the grain after half a second of motion at `phi` to it, N.
-fn lead(phi: f64, step: f64) -> Result<Vec3, LabError> {
+/// Friction along and across the grain after half a second of motion at `phi` to it, N; and the recording.
+fn lead(phi: f64, step: f64) -> Result<(Vec3, Option<(record::Log, record::Scene)>), LabError> {
     let bristle = Bristle { mu_static: MU, mu_kinetic: MU, across: ACROSS, stiffness: 2e4, ..Bristle::default() };
     let mut law = contact_law(POINT, 1e3, bristle);
     law.grain = Some(Grain { on_b: false, axis: Vec3::new(GRAIN.cos(), GRAIN.sin(), 0.0) });
@@ -76,13 +77,16 @@ fn lead(phi: f64, step: f64) -> Result<Vec3, LabError> {
     bench.add_spring("lead_y", GANTRY[1], 1e7, 1e3);
     let mut rig: Rig = bench.build()?;
     settle_gantry(&mut rig, 1.0, POINT);
+    let mut film = rig.film((0.01 / step).ceil() as u64);
     let (sin, cos) = (phi + GRAIN).sin_cos();
     for k in 1..=(0.5 / step) as u64 {
         let way = SPEED * step * k as f64;
         let commands = rig.world.commands_mut();
         (commands[0].position, commands[1].position) = (way * cos, way * sin);
         rig.advance()?;
+        film.shoot(&rig.world);
     }
     let (force, sin, cos) = (rig.friction_force(), GRAIN.sin(), GRAIN.cos());
-    Ok(Vec3::new(cos * force.x + sin * force.y, cos * force.y - sin * force.x, 0.0))
+    let force = Vec3::new(cos * force.x + sin * force.y, cos * force.y - sin * force.x, 0.0);
+    Ok((force, film.develop(&rig)?))
 }

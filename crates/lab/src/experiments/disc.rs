@@ -69,6 +69,7 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
             .marks("force, mean over a turn", errors.iter().map(|e| (e.0, e.1.0)).collect())
             .marks("torque, mean over a turn", errors.iter().map(|e| (e.0, e.1.1)).collect()),
     ];
+    outcome.run = record(step)?;
     Ok(outcome)
 }
 
@@ -145,6 +146,19 @@ struct Resistance {
     mean: (f64, f64),
     /// Largest differences from the closed form over a turn.
     worst: (f64, f64),
+}
+
+/// A turn of the disc that slides as fast as its rim turns, to look at.
+fn record(step: f64) -> Result<Option<(record::Log, record::Scene)>, LabError> {
+    let mut rig = rig(32, step)?;
+    let commands = rig.world.commands_mut();
+    (commands[0].velocity, commands[1].velocity) = (SPIN * RADIUS, SPIN);
+    let mut film = rig.film((0.01 / step).ceil() as u64);
+    for _ in 0..(2.0 * PI / SPIN / step) as u64 {
+        rig.advance()?;
+        film.shoot(&rig.world);
+    }
+    film.develop(&rig)
 }
 
 /// Turns the disc once while it slides.

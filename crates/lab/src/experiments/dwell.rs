@@ -53,7 +53,8 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
             format!("breakaway force of a fresh contact loaded at {} N/s", crate::report::shown(STIFFNESS * speed));
         outcome.figures.push(Figure::relative(name, measured, exact, "N", 5e-3));
     }
-    let (lag, loop_chart) = frictional_lag(step)?;
+    let (lag, loop_chart, run) = frictional_lag(step)?;
+    outcome.run = run;
     let name = "friction while the speed rises less while it falls, at 5 mm/s";
     outcome.figures.push(Figure::relative(name, lag, calc_lag(), "N", 0.02));
     outcome.charts = vec![dwell_chart(by_dwell), rate_chart(by_rate), loop_chart];
@@ -173,13 +174,15 @@ fn calc_lag() -> f64 {
 }
 
 /// Friction over speed through the second swing; how much more it is while the speed rises, at the mean.
-fn frictional_lag(step: f64) -> Result<(f64, Chart), LabError> {
+fn frictional_lag(step: f64) -> Result<(f64, Chart, Option<(record::Log, record::Scene)>), LabError> {
     let mut rig = rig(bristle(STRIBECK), step)?;
+    let mut film = rig.film((0.02 / step).ceil() as u64);
     let (mut rising, mut falling, mut points) = (f64::NAN, f64::NAN, Vec::new());
     for k in 1..=(2.0 * SWING / step) as u64 {
         let t = k as f64 * step;
         lead_on(&mut rig.world, calc_speed(t), step);
         rig.advance()?;
+        film.shoot(&rig.world);
         let force = rig.friction_force().norm();
         if t <= SWING {
             continue;
@@ -193,5 +196,5 @@ fn frictional_lag(step: f64) -> Result<(f64, Chart), LabError> {
     }
     let chart =
         Chart::new("Friction over a swing of the speed in 2 s", "speed, mm/s", "force, N").line("measured", points);
-    Ok((rising - falling, chart))
+    Ok((rising - falling, chart, film.develop(&rig)?))
 }

@@ -83,7 +83,8 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
     for ((name, _), drift) in all.iter().zip(drifts) {
         chart = chart.line(*name, drift.into_iter().map(|(n, x)| (n, x.abs().max(1e-18))).collect());
     }
-    Ok(Outcome { figures, charts: vec![chart, hysteresis()], ..Outcome::default() })
+    let run = record(all[0].1, step)?;
+    Ok(Outcome { figures, charts: vec![chart, hysteresis()], run, notes: Vec::new() })
 }
 
 /// Mean speed of a body under the load on regularised Coulomb friction, m/s.
@@ -126,6 +127,18 @@ fn drift(law: Friction, cycles: u32, step: f64) -> Result<Vec<(f64, f64)>, LabEr
         }
     }
     Ok(points)
+}
+
+/// Ten cycles on the bristle, to look at.
+fn record(law: Friction, step: f64) -> Result<Option<(record::Log, record::Scene)>, LabError> {
+    let mut rig = rig(law, step)?;
+    let mut film = rig.film((PERIOD / 50.0 / step).ceil() as u64);
+    for k in 1..=(10.0 * PERIOD / step) as u64 {
+        rig.world.commands_mut()[0].effort = load(k as f64 * step);
+        rig.advance()?;
+        film.shoot(&rig.world);
+    }
+    film.develop(&rig)
 }
 
 fn rig(law: Friction, step: f64) -> Result<Rig, LabError> {

@@ -1,5 +1,6 @@
 //! All checks in a row: each says what it finds, none stops the others unless it takes their ground.
 
+use super::docking::{DockingShapes, collect_docking};
 use super::errors::{Findings, UrdfProblem};
 use super::facts::{Facts, collect_facts};
 use super::graph::{Graph, build_graph};
@@ -19,6 +20,7 @@ pub(crate) struct Checked {
     pub(crate) graph: Graph,
     pub(crate) follows: Vec<Option<Follows>>,
     pub(crate) meshes: BTreeMap<MeshKey, Arc<Mesh>>,
+    pub(crate) docking: DockingShapes,
 }
 
 /// A mesh file as named in the URDF, at a scale.
@@ -59,7 +61,8 @@ pub(crate) fn check_robot(
         check_bodies(&facts, graph, findings);
     }
     let meshes = load_meshes(&facts, surroundings, findings);
-    graph.map(|graph| Checked { graph, follows, meshes })
+    let docking = collect_docking(&facts);
+    graph.map(|graph| Checked { graph, follows, meshes, docking })
 }
 
 /// Loads each mesh once for each scale, and tells each trouble where it is first asked for.

@@ -4,7 +4,7 @@
 //! whatever it finds; none of this meets it here.
 
 use super::joints::are_missing_bounds_infinite;
-use super::schema::{ROBOT, Tag};
+use super::schema::{ROBOT, SOFTDOCK_SHAPE, Tag};
 use super::walk::{own_children, text_of};
 use roxmltree::Node;
 
@@ -26,7 +26,7 @@ fn write_tag(node: Node<'_, '_>, tag: &'static Tag, out: &mut String) {
         }
     }
     out.push('>');
-    for child in tag.children {
+    for child in tag.children.iter().filter(|c| c.tag.name != SOFTDOCK_SHAPE.name) {
         for part in own_children(node).filter(|n| n.tag_name().name() == child.tag.name) {
             write_tag(part, child.tag, out);
         }

@@ -23,7 +23,7 @@ pub(crate) fn convert(robot: &urdf_rs::Robot, checked: &Checked, file: &Path) ->
         let mimic = checked.follows[joint].map(|follows| numbering.mimic(follows));
         convert_joint(&robot.joints[joint], numbering.link[parent], mimic)
     });
-    let links = order.iter().map(|link| convert_link(&robot.links[*link], &colours, checked));
+    let links = order.iter().map(|link| convert_link((*link, &robot.links[*link]), &colours, checked));
     Some(RobotDescription {
         name: robot.name.clone(),
         file: file.into(),
@@ -93,7 +93,11 @@ fn pose(origin: &urdf_rs::Pose) -> Pose {
     Pose::from_parts(Vec3::from(*origin.xyz).into(), Rot::from_euler_angles(roll, pitch, yaw))
 }
 
-fn convert_link(link: &urdf_rs::Link, colours: &Colours<'_>, checked: &Checked) -> Option<LinkDescription> {
+fn convert_link(
+    (number, link): (usize, &urdf_rs::Link),
+    colours: &Colours<'_>,
+    checked: &Checked,
+) -> Option<LinkDescription> {
     let collisions = link.collision.iter().enumerate();
     Some(LinkDescription {
         name: link.name.clone(),
@@ -112,7 +116,10 @@ fn convert_link(link: &urdf_rs::Link, colours: &Colours<'_>, checked: &Checked) 
                 let is_only = link.collision.len() == 1;
                 let made_up = || if is_only { link.name.clone() } else { format!("{}_{}", link.name, i + 1) };
                 let name = given(&collision.name).unwrap_or_else(made_up);
-                let geometry = convert_geometry(&collision.geometry, checked)?;
+                let geometry = match checked.docking.get(&(number, i)) {
+                    Some(docking) => Geometry::Docking(*docking),
+                    None => convert_geometry(&collision.geometry, checked)?,
+                };
                 Some(Collision { name, pose_ls: pose(&collision.origin), geometry })
             })
             .collect::<Option<_>>()?,

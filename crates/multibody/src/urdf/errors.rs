@@ -56,6 +56,10 @@ pub enum UrdfProblem {
     RepeatedTag { parent: &'static str, tag: &'static str },
     #[error("<geometry> holds no shape; put one of <box>, <sphere>, <cylinder>, <capsule>, <mesh> in it")]
     NoShape,
+    #[error("<softdock_shape> holds no shape; put one of <inner_cone>, <inner_cylinder>, <ring>, <petal> in it")]
+    NoDockingShape,
+    #[error("<softdock_shape> holds several shapes; give each a <collision> of its own")]
+    SeveralDockingShapes,
     #[error("<geometry> holds several shapes; give each a <visual> or <collision> of its own")]
     SeveralShapes,
     #[error("<{tag}> has no attribute {attribute}; add {attribute}=\"{example}\"")]

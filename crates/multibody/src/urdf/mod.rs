@@ -12,6 +12,7 @@
 mod checks;
 mod clean;
 mod convert;
+mod docking;
 mod errors;
 mod facts;
 mod graph;

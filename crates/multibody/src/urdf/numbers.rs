@@ -13,6 +13,9 @@ pub(crate) fn parse_numbers(tag: &Tag, attribute: &Attribute, text: &str) -> Res
         |rule| UrdfProblem::OutOfRange { tag: tag.name, attribute: attribute.name, text: cut(text), rule };
     let Some(expected) = number_count(kind) else {
         let is_empty_name = kind == Kind::Name && text.trim().is_empty();
+        if kind == Kind::Flag && !matches!(text.trim(), "true" | "false") {
+            return Err(out_of_range(rule_of(kind)));
+        }
         return if is_empty_name { Err(out_of_range("is empty; write a name")) } else { Ok(Vec::new()) };
     };
     let mut numbers = Vec::with_capacity(expected);
@@ -34,9 +37,10 @@ pub(crate) fn parse_numbers(tag: &Tag, attribute: &Attribute, text: &str) -> Res
 
 fn number_count(kind: Kind) -> Option<usize> {
     match kind {
-        Kind::Text | Kind::Name => None,
+        Kind::Text | Kind::Name | Kind::Flag => None,
         Kind::Number | Kind::NumberOrInfinity => Some(1),
         Kind::Positive | Kind::NonNegative | Kind::NonNegativeOrInfinity => Some(1),
+        Kind::AcuteAngle | Kind::HalfTurn => Some(1),
         Kind::Vec3 | Kind::Size | Kind::Scale => Some(3),
         Kind::Rgba | Kind::Quaternion => Some(4),
     }
@@ -54,7 +58,9 @@ fn broken_rule(kind: Kind, numbers: &[f64]) -> Option<&'static str> {
         Kind::Scale => any(|x| x == 0.0),
         Kind::Rgba => any(|x| !(0.0..=1.0).contains(&x)),
         Kind::Quaternion => numbers.iter().all(|x| *x == 0.0),
-        Kind::Text | Kind::Name | Kind::Number | Kind::NumberOrInfinity | Kind::Vec3 => false,
+        Kind::AcuteAngle => any(|x| x <= 0.0 || x >= std::f64::consts::FRAC_PI_2),
+        Kind::HalfTurn => any(|x| x <= 0.0 || x >= std::f64::consts::PI),
+        Kind::Text | Kind::Name | Kind::Number | Kind::NumberOrInfinity | Kind::Vec3 | Kind::Flag => false,
     };
     if is_broken {
         return Some(rule_of(kind));
@@ -70,6 +76,9 @@ fn rule_of(kind: Kind) -> &'static str {
         Kind::Scale => "flattens the mesh; scales must not be zero",
         Kind::Rgba => "is no colour; give four numbers from 0 to 1",
         Kind::Quaternion => "is no rotation; give a unit quaternion x y z w",
+        Kind::AcuteAngle => "is not between 0 and π/2; give an angle in rad",
+        Kind::HalfTurn => "is not between 0 and π; give an angle in rad",
+        Kind::Flag => "is neither true nor false; write one of them",
         Kind::Text | Kind::Name | Kind::Number | Kind::NumberOrInfinity | Kind::Vec3 => "is out of range",
     }
 }

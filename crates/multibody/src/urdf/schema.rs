@@ -4,6 +4,8 @@
 //! versions 1.1 and 1.2 as in urdfdom. What is not in the table is a vendor's own and is passed over, unless it looks
 //! like a misspelling of something in the table.
 
+use super::docking::{INNER_CONE, INNER_CYLINDER, PETAL, RING};
+
 /// A tag.
 pub(crate) struct Tag {
     pub(crate) name: &'static str,
@@ -58,13 +60,19 @@ pub(crate) enum Kind {
     Rgba,
     /// Four numbers that are not all zero.
     Quaternion,
+    /// An angle between 0 and π/2.
+    AcuteAngle,
+    /// An angle between 0 and π.
+    HalfTurn,
+    /// true or false.
+    Flag,
 }
 
-const fn must(name: &'static str, kind: Kind) -> Attribute {
+pub(crate) const fn must(name: &'static str, kind: Kind) -> Attribute {
     Attribute { name, kind, is_required: true }
 }
 
-const fn may(name: &'static str, kind: Kind) -> Attribute {
+pub(crate) const fn may(name: &'static str, kind: Kind) -> Attribute {
     Attribute { name, kind, is_required: false }
 }
 
@@ -80,7 +88,7 @@ const fn many(tag: &'static Tag) -> Child {
     Child { tag, count: Count::Many }
 }
 
-const fn leaf(name: &'static str, attributes: &'static [Attribute]) -> Tag {
+pub(crate) const fn leaf(name: &'static str, attributes: &'static [Attribute]) -> Tag {
     Tag { name, attributes, children: &[], passed_over: &[], is_choice: false }
 }
 
@@ -132,10 +140,18 @@ static VISUAL: Tag = node(
     &[may("name", Kind::Text)],
     &[optional(&ORIGIN), one(&GEOMETRY), Child { tag: &MATERIAL, count: Count::Optional }],
 );
+/// softdock's own: what a collision is made of, where URDF has no word for it.
+pub(crate) static SOFTDOCK_SHAPE: Tag = Tag {
+    name: "softdock_shape",
+    attributes: &[],
+    children: &[optional(&INNER_CONE), optional(&INNER_CYLINDER), optional(&RING), optional(&PETAL)],
+    passed_over: &[],
+    is_choice: true,
+};
 static COLLISION: Tag = Tag {
     name: "collision",
     attributes: &[may("name", Kind::Text)],
-    children: &[optional(&ORIGIN), one(&GEOMETRY)],
+    children: &[optional(&ORIGIN), one(&GEOMETRY), optional(&SOFTDOCK_SHAPE)],
     passed_over: &["material", "verbose", "surface", "contact_coefficients", "max_contacts"],
     is_choice: false,
 };
@@ -200,6 +216,9 @@ pub(crate) static HOMES: &[(&str, &str)] = &[
     ("cylinder", "geometry"),
     ("capsule", "geometry"),
     ("mesh", "geometry"),
+    ("softdock_shape", "collision"),
+    ("inner_cone", "softdock_shape"),
+    ("inner_cylinder", "softdock_shape"),
     ("parent", "joint"),
     ("child", "joint"),
     ("axis", "joint"),
@@ -216,6 +235,8 @@ pub(crate) fn example_of(kind: Kind) -> &'static str {
         Kind::Size | Kind::Scale => "1 1 1",
         Kind::Rgba => "0.5 0.5 0.5 1",
         Kind::Quaternion => "0 0 0 1",
+        Kind::AcuteAngle | Kind::HalfTurn => "0.785",
+        Kind::Flag => "true",
         Kind::Positive | Kind::Number | Kind::NonNegative | Kind::NumberOrInfinity | Kind::NonNegativeOrInfinity => {
             "1.0"
         }

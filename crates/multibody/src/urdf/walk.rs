@@ -76,6 +76,12 @@ fn check_counts(node: Node<'_, '_>, tag: &'static Tag, subject: &str, findings: 
         }
     }
     match (tag.is_choice, shapes) {
+        (true, 0) if tag.name != "geometry" => {
+            findings.add(node.range().start, subject, UrdfProblem::NoDockingShape);
+        }
+        (true, 2..) if tag.name != "geometry" => {
+            findings.add(node.range().start, subject, UrdfProblem::SeveralDockingShapes);
+        }
         (true, 0) => findings.add(node.range().start, subject, UrdfProblem::NoShape),
         (true, 2..) => findings.add(node.range().start, subject, UrdfProblem::SeveralShapes),
         _ => {}

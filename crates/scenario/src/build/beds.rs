@@ -1,10 +1,12 @@
 //! The forms of `[[shape]]` entries: solids, and beds, whose contact is spread over a face.
 
+use super::docking::docking_of_kind;
 use super::faults::Faults;
 use super::shapes::shape_of_geometry;
 use crate::spec::ShapeKind;
 use contact::{Bed, Shape};
 use multibody::LinkDescription;
+use record::docking_of_geometry;
 use spatial::{Pose, Vec3};
 
 /// The collision shape of an entry, and its pose before the entry's own; `link` is what it is fixed to, if not the world.
@@ -27,6 +29,9 @@ pub(super) fn shape_of_kind(
 }
 
 fn plain_shape(kind: &ShapeKind) -> Shape {
+    if let Some(docking) = docking_of_kind(kind) {
+        return Shape::Docking(docking_of_geometry(&docking));
+    }
     match *kind {
         ShapeKind::Box { size_m } => Shape::Cuboid { half_extents: 0.5 * Vec3::from(size_m) },
         ShapeKind::Sphere { radius_m } => Shape::Ball { radius: radius_m },
@@ -44,9 +49,9 @@ fn plain_shape(kind: &ShapeKind) -> Shape {
         ShapeKind::RectangleBed { size_m: [x, y], samples, reference_area_m2 } => {
             bed(Bed::rectangle(x, y, samples as usize), reference_area_m2)
         }
-        // Answered by its caller, who knows the geometry.
-        ShapeKind::SurfaceBed { .. } => Shape::Bed(Bed::new(Vec::new())),
         ShapeKind::HalfSpace => Shape::HalfSpace,
+        // A surface is answered by its caller, who knows the geometry; docking shapes above.
+        _ => Shape::Bed(Bed::new(Vec::new())),
     }
 }
 

@@ -4,6 +4,7 @@
 
 mod actuators;
 mod beds;
+mod docking;
 mod faults;
 mod kinematics;
 mod laws;
@@ -13,6 +14,7 @@ mod start;
 mod vehicles;
 
 pub(crate) use actuators::ActuatorTable;
+pub use docking::docking_visuals;
 pub(crate) use faults::Faults;
 pub(crate) use kinematics::{calc_error, halves, solve_pose};
 pub use shapes::shape_of_geometry;

@@ -9,6 +9,7 @@ use super::laws::{pair_law, pivot_law};
 use crate::spec::{Grain, Scenario};
 use contact::Shape;
 use multibody::{Geometry, RobotDescription};
+use record::docking_of_geometry;
 use sim::{Base, PairLaw, ShapeSpec, VehicleSpec};
 use spatial::Vec3;
 
@@ -72,6 +73,7 @@ pub fn shape_of_geometry(geometry: &Geometry) -> Shape {
         Geometry::Sphere { radius } => Shape::Ball { radius: *radius },
         Geometry::Cylinder { radius, length } => Shape::Cylinder { radius: *radius, half_length: 0.5 * length },
         Geometry::Capsule { radius, length } => Shape::Capsule { radius: *radius, half_length: 0.5 * length },
+        Geometry::Docking(geometry) => Shape::Docking(docking_of_geometry(geometry)),
         Geometry::Mesh(mesh) => Shape::TriMesh {
             vertices: mesh.vertices.iter().map(|v| Vec3::from(*v)).collect(),
             triangles: mesh.triangles.clone(),

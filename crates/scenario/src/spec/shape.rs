@@ -31,7 +31,7 @@ impl Shape {
     }
 }
 
-/// Form and sizes of a shape; its origin is its centre.
+/// Form and sizes of a shape; its origin is its centre, where it does not say otherwise.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ShapeKind {
@@ -121,6 +121,71 @@ pub enum ShapeKind {
         #[schemars(extend("exclusiveMinimum" = 0.0))]
         reference_area_m2: Option<f64>,
     },
+    /// A drogue: the inside of a cone frustum about z. Its mouth is in z = 0 and opens to +z.
+    InnerCone {
+        /// Angle between wall and axis, degrees.
+        #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 90.0))]
+        half_angle_deg: f64,
+        /// From mouth to throat along the axis, m.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        depth_m: f64,
+        /// Inner radius at the throat, m; zero (default) where the cone closes.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        throat_radius_m: f64,
+        /// Thickness of the wall behind the inner surface, m; rims are rounded by half of it. Default 0.01.
+        #[serde(default = "wall")]
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        wall_m: f64,
+    },
+    /// A socket or bore: the inside of a tube about z. Its mouth is in z = 0 and opens to +z.
+    InnerCylinder {
+        /// Inner radius, m.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        radius_m: f64,
+        /// From the mouth to the floor or the other end, m.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        depth_m: f64,
+        /// Thickness of wall and floor, m; rims are rounded by half of it. Default 0.01.
+        #[serde(default = "wall")]
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        wall_m: f64,
+        /// Whether the lower end is closed by a floor.
+        #[serde(default)]
+        floor: bool,
+    },
+    /// A torus about z: a soft-capture ring.
+    Ring {
+        /// Radius of the circle in z = 0, m.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        major_radius_m: f64,
+        /// Radius of the cross-section, m.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        minor_radius_m: f64,
+    },
+    /// A guide petal: a rounded plate, the sector of a cone about z that is centred on +x, its base in z = 0.
+    Petal {
+        /// Radius of the plate's middle surface at its base, m.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        base_radius_m: f64,
+        /// The same at its tip, m: smaller leans inward and tapers in proportion.
+        #[schemars(range(min = 0.0))]
+        tip_radius_m: f64,
+        /// Height of the tip above the base, m.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        height_m: f64,
+        /// Half the angle that it spans about z, degrees.
+        #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 180.0))]
+        half_sector_deg: f64,
+        /// Thickness of the plate, m; edges are rounded by half of it.
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        thickness_m: f64,
+    },
     /// Everything below the plane z = 0 of its pose; its outward normal is +z.
     HalfSpace,
+}
+
+/// Thickness of a wall that is not told, m.
+fn wall() -> f64 {
+    0.01
 }

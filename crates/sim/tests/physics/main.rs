@@ -9,6 +9,7 @@ mod beds;
 mod brush;
 mod convergence;
 mod determinism;
+mod docking;
 mod free_motion;
 mod friction;
 mod guided;

@@ -1,0 +1,247 @@
+//! Curves (rims, edges, axes) and the local minima of their distance from a body.
+//!
+//! With g(u) the distance of the curve's point c(u) and n its gradient, g′ = n · c′ is exact. A distance is semiconcave, so
+//! its minima along a curve are smooth points, where g′ passes from − to +. It also changes by no more than the length of
+//! the curve between two samples, so stretches that cannot come near are passed over; the rest is sampled finely, more so
+//! where the slopes leave room for a hidden pair of extrema, and bracketed; the bracket is closed by the Illinois variant of regula falsi (Dowell and Jarratt 1971). A cold start every
+//! time, no history, no allocation.
+
+use super::body::Body;
+use super::sheet::Near;
+use spatial::Vec3;
+use std::f64::consts::TAU;
+
+/// Coarse intervals along a curve.
+const COARSE: usize = 24;
+/// Fine intervals in each that may come near.
+const FINE: usize = 6;
+/// Halvings of an interval of a curve whose slopes leave room for two extrema, and most of them in one scan.
+const DEPTH: usize = 3;
+const BUDGET: usize = 1000;
+/// Most steps of the root finding; a dozen are usual.
+const STEPS: usize = 60;
+/// Most minima of one curve.
+pub(crate) const MOST: usize = 8;
+
+/// A segment or an arc in a common frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Curve {
+    /// Start of a segment; centre of an arc.
+    origin: Vec3,
+    /// A segment's whole length along the first; an arc's two radii.
+    arms: [Vec3; 2],
+    /// First angle and span of an arc, rad; a segment has none.
+    arc: Option<(f64, f64)>,
+}
+
+/// A local minimum of the distance from a body along a curve.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Minimum {
+    /// Place on the curve: an angle, or a fraction of a segment.
+    pub(crate) u: f64,
+    /// Direction and distance there.
+    pub(crate) near: Near,
+}
+
+/// The minima found, and what else the scan saw.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scan {
+    minima: [Minimum; MOST],
+    count: usize,
+    budget: usize,
+    /// Largest distance of the coarse samples, m.
+    pub(crate) far: f64,
+    /// The nearest of the coarse samples.
+    pub(crate) nearest: Minimum,
+    /// Smaller distance of the two ends, m.
+    pub(crate) ends: f64,
+}
+
+impl Scan {
+    /// The minima along the curve.
+    pub(crate) fn minima(&self) -> &[Minimum] {
+        &self.minima[..self.count]
+    }
+
+    fn push(&mut self, minimum: Minimum) {
+        if self.count < MOST {
+            self.minima[self.count] = minimum;
+            self.count += 1;
+        }
+    }
+}
+
+/// A sample: place, distance, slope.
+type Sample = (f64, f64, f64);
+
+/// Something along which a distance is sampled.
+pub(crate) trait Path {
+    /// First place, span, and how much the distance may change over a unit of it at most; whether it closes.
+    fn extent(&self) -> (f64, f64, f64, bool);
+
+    /// Direction and distance at `u`, and the distance's slope.
+    fn sample(&self, target: &Body<'_>, u: f64) -> (Near, f64);
+
+    /// How often an interval may be halved where its slopes leave room for two extrema.
+    fn halvings(&self) -> usize;
+
+    /// Minima of the distance from `target` that are below `reach`, in the order of `u`.
+    fn scan(&self, target: &Body<'_>, reach: f64) -> Scan
+    where
+        Self: Sized,
+    {
+        scan(self, target, reach)
+    }
+}
+
+impl Curve {
+    /// From one point to another.
+    pub(crate) fn segment(from: Vec3, to: Vec3) -> Self {
+        Self { origin: from, arms: [to - from, Vec3::zeros()], arc: None }
+    }
+
+    /// About a centre, from an angle on; `radii`: two perpendicular radii.
+    pub(crate) fn arc(centre: Vec3, radii: [Vec3; 2], from: f64, span: f64) -> Self {
+        Self { origin: centre, arms: radii, arc: Some((from, span)) }
+    }
+
+    /// Whether it is a full circle.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.arc.is_some_and(|(_, span)| span == TAU)
+    }
+
+    /// The point at `u`.
+    #[inline]
+    pub(crate) fn point(&self, u: f64) -> Vec3 {
+        if self.arc.is_none() {
+            return self.origin + u * self.arms[0];
+        }
+        let (s, c) = u.sin_cos();
+        self.origin + c * self.arms[0] + s * self.arms[1]
+    }
+
+    #[inline]
+    fn tangent(&self, u: f64) -> Vec3 {
+        if self.arc.is_none() {
+            return self.arms[0];
+        }
+        let (s, c) = u.sin_cos();
+        c * self.arms[1] - s * self.arms[0]
+    }
+}
+
+impl Path for Curve {
+    fn extent(&self) -> (f64, f64, f64, bool) {
+        let (from, span) = self.arc.unwrap_or((0.0, 1.0));
+        (from, span, self.arms[0].norm(), self.is_closed())
+    }
+
+    fn halvings(&self) -> usize {
+        DEPTH
+    }
+
+    #[inline]
+    fn sample(&self, target: &Body<'_>, u: f64) -> (Near, f64) {
+        let near = target.nearest(&self.point(u));
+        (near, near.normal.dot(&self.tangent(u)))
+    }
+}
+
+fn sample(path: &impl Path, target: &Body<'_>, u: f64) -> Sample {
+    let (near, slope) = path.sample(target, u);
+    (u, near.distance, slope)
+}
+
+fn minimum(path: &impl Path, target: &Body<'_>, u: f64) -> Minimum {
+    Minimum { u, near: path.sample(target, u).0 }
+}
+
+fn scan(path: &impl Path, target: &Body<'_>, reach: f64) -> Scan {
+    let (from, span, speed, is_closed) = path.extent();
+    let step = span / COARSE as f64;
+    let first = sample(path, target, from);
+    let start = Minimum { u: from, near: Near { normal: Vec3::z(), distance: f64::INFINITY } };
+    let mut scan =
+        Scan { minima: [start; MOST], count: 0, budget: BUDGET, far: first.1, nearest: start, ends: first.1 };
+    let (mut best, mut before) = (first, first);
+    for i in 1..=COARSE {
+        let u = from + step * i as f64;
+        let after = if is_closed && i == COARSE { (u, first.1, first.2) } else { sample(path, target, u) };
+        // No place between two samples is nearer than the mean of both less half the way between them.
+        if 0.5 * (before.1 + after.1 - step * speed) < reach {
+            scan_finely(path, target, (before, after), &mut scan);
+        }
+        scan.far = scan.far.max(after.1);
+        if after.1 < best.1 {
+            best = after;
+        }
+        before = after;
+    }
+    scan.ends = scan.ends.min(before.1);
+    scan.nearest = minimum(path, target, best.0);
+    scan
+}
+
+fn scan_finely(path: &impl Path, target: &Body<'_>, (from, to): (Sample, Sample), scan: &mut Scan) {
+    let mut before = from;
+    for i in 1..=FINE {
+        let u = from.0 + (to.0 - from.0) * i as f64 / FINE as f64;
+        let after = if i == FINE { to } else { sample(path, target, u) };
+        split(path, target, (before, after), path.halvings(), scan);
+        before = after;
+    }
+}
+
+/// Notes the minimum between two samples; halves the stretch where there may be more extrema than its ends tell.
+fn split(path: &impl Path, target: &Body<'_>, (a, b): (Sample, Sample), depth: usize, scan: &mut Scan) {
+    if depth > 0 && scan.budget > 0 && may_hide(path.extent().2, &a, &b) {
+        scan.budget -= 1;
+        let middle = sample(path, target, 0.5 * (a.0 + b.0));
+        split(path, target, (a, middle), depth - 1, scan);
+        return split(path, target, (middle, b), depth - 1, scan);
+    }
+    if a.2 < 0.0 && b.2 >= 0.0 {
+        let u = find_root(&|u| path.sample(target, u).1, (a.0, a.2), (b.0, b.2));
+        scan.push(minimum(path, target, u));
+    }
+}
+
+/// Whether a minimum may lie between two samples that their slopes do not tell of. A distance d bends upwards by at most
+/// the speed squared over d (an arc's own bend adds as much again at most where it is not much smaller than d), so a
+/// slope does not rise through zero to more than that times the stretch.
+fn may_hide(speed: f64, a: &Sample, b: &Sample) -> bool {
+    let rise = 2.0 * speed * speed / a.1.min(b.1).max(f64::MIN_POSITIVE) * (b.0 - a.0);
+    let (falls, rises) = (-a.2 < rise, b.2 < rise);
+    match (a.2 < 0.0, b.2 < 0.0) {
+        (true, true) => falls,
+        (false, false) => rises,
+        (true, false) => falls && rises,
+        (false, true) => false,
+    }
+}
+
+/// Where a slope passes from − at `a` to + at `b`.
+pub(crate) fn find_root(slope: &dyn Fn(f64) -> f64, a: (f64, f64), b: (f64, f64)) -> f64 {
+    let ((mut a, mut fa), (mut b, mut fb)) = (a, b);
+    let mut last = 0;
+    for _ in 0..STEPS {
+        let c = (a * fb - b * fa) / (fb - fa);
+        if !(c > a && c < b) {
+            break;
+        }
+        let fc = slope(c);
+        if fc < 0.0 {
+            (a, fa) = (c, fc);
+            fb *= if last < 0 { 0.5 } else { 1.0 };
+            last = -1;
+        } else {
+            (b, fb) = (c, fc);
+            fa *= if last > 0 { 0.5 } else { 1.0 };
+            last = 1;
+        }
+        if fc == 0.0 {
+            return c;
+        }
+    }
+    if -fa < fb { a } else { b }
+}
