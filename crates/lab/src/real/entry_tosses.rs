@@ -69,7 +69,8 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
 /// What the numbers mean and what they do not.
 const NOTE: &str = "Errors are means over the samples of a toss, then over tosses: distance of the centres in % of the \
     cube's width (104.8 mm), angle between the attitudes. To beat, on the same tosses: MuJoCo at μ 0.18, elliptic cone, \
-    solref 4 ms, 11.5 % and 15.2°; tests/peers/cube_tosses.py runs it beside, also fitted the same way. Where a cube comes \
+    solref 4 ms, 11.5 % and 15.2°. Fitted by the same search on the same tosses with the same freedom (round corners, impratio, data \
+    corrected) MuJoCo comes to 10.5 % and 13.9°, as recorded to 11.5 % and 14.4° (tests/peers/cube_tosses.md). Where a cube comes \
     to rest after several impacts is chaotic: a corner that hits a millimetre off may tip it onto another face, and the errors \
     at the end are dominated by the tosses in which that happens.";
 
