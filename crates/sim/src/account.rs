@@ -49,9 +49,14 @@ impl MomentumAudit {
         }
     }
 
-    /// Whether the account is meaningful: every vehicle floats free.
+    /// Whether the account is meaningful: every vehicle floats free, and nothing holds on to the world or leans on it.
     pub fn applies(world: &World) -> bool {
-        world.model().vehicles.iter().all(|v| v.base == Base::Free)
+        let model = world.model();
+        let ground = model.world_body();
+        let touches_ground =
+            (0..model.scene.pairs().len()).map(|p| model.pair_bodies(p)).any(|(a, b)| a == ground || b == ground);
+        let held = model.mechanisms.iter().any(|m| m.side_a.vehicle.is_none() || m.side_b.vehicle.is_none());
+        model.vehicles.iter().all(|v| v.base == Base::Free) && !touches_ground && !held
     }
 
     /// Takes the present state into account.
