@@ -13,6 +13,9 @@
 //! hulls and meshes, the rims of two cylinders and deep overlaps by parry3d's algorithms from a cold start, to about 1e-9 m
 //! (the normal of two crossing rims to about 1e-5 rad).
 //!
+//! Docking shapes ([`Docking`]: drogue, bore, ring, petal) are smooth surfaces of revolution with exact gaps, against each
+//! other and against the primitives; how many points they make, and how stiff a seat is, stands in their module.
+//!
 //! # Identity
 //!
 //! [`ContactPoint::feature`] names the vertex of one body, or the edge of each, that makes the point, mixed with the part of
