@@ -14,6 +14,9 @@
 //! and deep overlaps are left to parry3d, to about 1e-9 m (the normal of two crossing rims to about 1e-5 rad); the side of
 //! one cylinder over the rim of another is within half a per cent of its radius.
 //!
+//! Docking shapes ([`Docking`]: drogue, bore, ring, petal) are smooth surfaces of revolution with exact gaps, against each
+//! other and against the primitives; how many points they make, and how stiff a seat is, stands in their module.
+//!
 //! # Identity
 //!
 //! [`ContactPoint::feature`] names the vertex of one body, or the edge of each, that makes the point, mixed with the part of

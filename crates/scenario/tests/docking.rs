@@ -50,8 +50,10 @@ half_sector_deg = 30.0
 thickness_m = 0.012
 "#;
 
-fn written(text: &str) -> Result<scenario::Mission, String> {
-    let dir = Path::new(env!("CARGO_TARGET_TMPDIR"));
+/// The scenario of this text, built in a folder of its own.
+fn written(folder: &str, text: &str) -> Result<scenario::Mission, String> {
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
+    std::fs::create_dir_all(&dir).unwrap();
     std::fs::write(dir.join("port.urdf"), PORT).unwrap();
     let file = dir.join("docking.toml").display().to_string();
     let scenario = parse(text, &file, &[]).map_err(|e| e.to_string())?;
@@ -60,7 +62,7 @@ fn written(text: &str) -> Result<scenario::Mission, String> {
 
 #[test]
 fn all_kinds_reach_the_scene_with_their_sizes() {
-    let mission = written(SCENARIO).unwrap_or_else(|said| panic!("{said}"));
+    let mission = written("sound", SCENARIO).unwrap_or_else(|said| panic!("{said}"));
     let shapes: Vec<&Shape> = mission.world.model().scene.colliders().iter().map(|c| &c.shape).collect();
     let is_close = |a: f64, b: f64| (a - b).abs() < 1e-15;
     assert_eq!(shapes.len(), 5);
@@ -88,10 +90,10 @@ fn all_kinds_reach_the_scene_with_their_sizes() {
 fn sizes_out_of_range_and_unknown_keys_are_told_with_their_line() {
     for (from, to, fragments) in [
         ("half_angle_deg = 45.0", "half_angle_deg = 95.0", ["`shape.drogue.half_angle_deg` = 95", "less than 90"]),
-        ("depth_m = 0.14", "depth_m = 0.14\nlenght_m = 1.0", ["lenght_m", "docking.toml:18"]),
+        ("depth_m = 0.14", "depth_m = 0.14\nlenght_m = 1.0", ["lenght_m", "docking.toml:19"]),
         ("kind = \"inner-cone\"", "kind = \"inner-kone\"", ["inner-kone", "inner-cone"]),
     ] {
-        let said = written(&SCENARIO.replacen(from, to, 1)).err().unwrap_or_default();
+        let said = written("broken", &SCENARIO.replacen(from, to, 1)).err().unwrap_or_default();
         assert!(fragments.iter().all(|f| said.contains(f)), "{fragments:?} not in:\n{said}");
     }
 }

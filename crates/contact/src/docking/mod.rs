@@ -21,7 +21,9 @@
 //! and one-dimensional minimisations of [`pair`]; hulls and meshes through parry3d and a tessellation, with facets.
 //! [`DockingShape`] is the same as a custom shape for parry3d, and [`DockingDispatcher`] answers its queries.
 //!
-//! Limits: along an arc that fits another exactly over part of its length, the place of the deepest point is left to round-off.
+//! Limits: where an arc fits another curve exactly over part of its length, the place of the deepest point is left to
+//! round-off. Two places of one curve less than a few hundredths of its radius apart may be seen as one. A body whose core
+//! has crossed a sheet's middle surface is pushed out on the far side.
 
 mod arc;
 mod body;

@@ -1,16 +1,18 @@
 //! The points of a pair of which at least one is a docking shape.
 //!
 //! Candidates, in this order: points of each body (a ball's centre, a capsule's ends, corners) against the other as a
-//! whole; then the local minima along each body's curves (rims, edges, axes) against the other as a whole; last those of two
-//! curved sides. Each is exact, and there are more than needed: as a capsule slides out of a bore, its end, its side and the rim come to mean one place.
+//! whole; then the local minima along each body's curves (rims, edges, axes) against the other as a whole; last those of
+//! two curved sides. Each is exact, and there are more than needed: as a capsule slides out of a bore, its end, its side
+//! and the rim come to mean one place.
 //!
 //! So that nothing jumps there, what an earlier candidate already holds is taken off a later one nearby:
 //!
 //!   δᵢ ← δᵢ − Σ κ(|xᵢ − xⱼ| / D) max(0, nᵢ·nⱼ) δⱼ,   κ(t) = (1 − t⁴)² for t < 1
 //!
-//! D: the sum of the rounding radii. Two that coincide count once, and a point that comes off an end comes
-//! off with nothing. Against the points and curves of its own body, a minimum along a curve with ends or on a side counts by
-//! how much it is deeper than those instead, so that what lies flush is held at its corners and not at a place of chance. Elsewhere, gaps are those of the surfaces, to round-off.
+//! D: the sum of the rounding radii. Two that coincide count once, and a point that comes off an end comes off with
+//! nothing. Against the points and curves of its own body, a minimum along a curve with ends or on a side counts by how
+//! much it is deeper than those instead, so that what lies flush is held at its corners and not at a place of chance.
+//! Everywhere else, and wherever nothing touches, gaps are those of the surfaces, to round-off.
 
 use super::arc::{Curve, Minimum, Path, Scan};
 use super::body::{Body, Kind};
@@ -254,8 +256,13 @@ impl DockingBuffer {
         }
     }
 
-    fn push(&mut self, candidate: Candidate, margin: f64) {
+    /// Keeps a candidate within the margin, under a number of its own.
+    fn push(&mut self, mut candidate: Candidate, margin: f64) {
         if candidate.gap < margin {
+            let name = |c: &Candidate| (c.source, c.label);
+            while self.found.iter().any(|other| name(other) == name(&candidate)) {
+                candidate.label += BINS as u32;
+            }
             self.found.push(candidate);
         }
     }

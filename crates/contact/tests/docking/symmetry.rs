@@ -81,6 +81,9 @@ fn points_are_finite_consistent_and_without_history() {
             let (a, b) =
                 if k == 0 { (at(0.0, 0.0, 0.0), at(0.0, 0.0, 0.0)) } else { (dice.frame(0.1), dice.frame(0.1)) };
             let points = used.find(&a, &b, 0.01).to_vec();
+            let mut names: Vec<u64> = points.iter().map(|p| p.feature).collect();
+            names.dedup();
+            assert_eq!(names.len(), points.len(), "two points of one name: {points:?}");
             for p in &points {
                 assert!(p.gap.is_finite() && (p.normal_w.norm() - 1.0).abs() < 1e-12, "{one:?} {other:?} {p:?}");
                 assert!((p.point_b_w - p.point_a_w - p.gap * p.normal_w).norm() < 1e-15);

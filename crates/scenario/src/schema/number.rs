@@ -29,5 +29,8 @@ fn range_demand(schema: &Value, value: f64) -> Option<String> {
     if let Some(low) = bound("minimum").filter(|low| value < *low) {
         return Some(format!("must be at least {low}"));
     }
+    if let Some(high) = bound("exclusiveMaximum").filter(|high| value >= *high) {
+        return Some(format!("must be less than {high}"));
+    }
     bound("maximum").filter(|high| value > *high).map(|high| format!("must be at most {high}"))
 }
