@@ -18,7 +18,7 @@ pub mod scene;
 
 pub use chart::chart_svg;
 pub use experiments::catalogue;
-pub use outcome::{Allowed, Chart, Curve, Experiment, Figure, LabError, Options, Outcome};
+pub use outcome::{Allowed, Chart, Curve, Experiment, Figure, LabError, Options, Outcome, Recording};
 
 /// An experiment by its name.
 pub fn find(name: &str) -> Option<Experiment> {

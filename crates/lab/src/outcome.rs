@@ -26,6 +26,9 @@ pub struct Options {
     pub refit: bool,
 }
 
+/// A run to look at: its log and what its scene looks like; `None` where there is none.
+pub type Recording = Option<(record::Log, record::Scene)>;
+
 /// What an experiment found.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
@@ -34,7 +37,7 @@ pub struct Outcome {
     /// Charts, drawn one below the other.
     pub charts: Vec<Chart>,
     /// One run to look at: its log and what its scene looks like.
-    pub run: Option<(record::Log, record::Scene)>,
+    pub run: Recording,
     /// What a reader should know besides: limits, sources, what was left out; a Markdown table where it begins with `|`.
     pub notes: Vec<String>,
 }

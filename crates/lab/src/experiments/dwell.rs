@@ -11,7 +11,7 @@
 use crate::bench::Rig;
 use crate::exact::first_root;
 use crate::scene::{GANTRY, GRAVITY, contact_law, gantry_block, settle_gantry};
-use crate::{Chart, Experiment, Figure, LabError, Options, Outcome};
+use crate::{Chart, Experiment, Figure, LabError, Options, Outcome, Recording};
 use friction::Bristle;
 use sim::World;
 use std::f64::consts::PI;
@@ -174,7 +174,7 @@ fn calc_lag() -> f64 {
 }
 
 /// Friction over speed through the second swing; how much more it is while the speed rises, at the mean.
-fn frictional_lag(step: f64) -> Result<(f64, Chart, Option<(record::Log, record::Scene)>), LabError> {
+fn frictional_lag(step: f64) -> Result<(f64, Chart, Recording), LabError> {
     let mut rig = rig(bristle(STRIBECK), step)?;
     let mut film = rig.film((0.02 / step).ceil() as u64);
     let (mut rising, mut falling, mut points) = (f64::NAN, f64::NAN, Vec::new());
