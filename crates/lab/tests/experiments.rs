@@ -6,7 +6,7 @@ use lab::{Options, chart_svg};
 /// Runs an experiment quickly; says every figure, and which do not hold.
 fn figures_of(name: &str) {
     let experiment = lab::find(name).unwrap();
-    let outcome = (experiment.run)(&Options { step: None, quick: true }).unwrap();
+    let outcome = (experiment.run)(&Options { quick: true, ..Options::default() }).unwrap();
     assert!(outcome.figures.len() > 1, "{name} measures something");
     for row in lab::report::rows(&outcome) {
         println!("{}", row.join(" | "));
@@ -49,11 +49,15 @@ experiments! {
 
 #[test]
 fn every_experiment_is_tested_and_has_its_own_name() {
-    let mut names: Vec<&str> = lab::catalogue().iter().map(|e| e.name).collect();
+    // Those that need recordings are tested in real.rs.
+    let here = lab::catalogue().into_iter().filter(|e| !e.question.ends_with(lab::real::NEEDS_RECORDINGS));
+    let mut names: Vec<&str> = here.map(|e| e.name).collect();
     names.sort_unstable();
     let mut tested = TESTED.to_vec();
     tested.sort_unstable();
     assert_eq!(names, tested);
-    names.dedup();
-    assert_eq!(names.len(), lab::catalogue().len());
+    let mut all: Vec<&str> = lab::catalogue().iter().map(|e| e.name).collect();
+    all.sort_unstable();
+    all.dedup();
+    assert_eq!(all.len(), lab::catalogue().len());
 }
