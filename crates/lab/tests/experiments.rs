@@ -52,12 +52,16 @@ const WITH_RECORDINGS: [&str; 2] = ["cube-tosses", "fretting"];
 
 #[test]
 fn every_experiment_is_tested_and_has_its_own_name() {
-    let mut names: Vec<&str> = lab::catalogue().iter().map(|e| e.name).collect();
+    // Those that need recordings are tested in real.rs.
+    let here = lab::catalogue().into_iter().filter(|e| !e.question.ends_with(lab::real::NEEDS_RECORDINGS));
+    let mut names: Vec<&str> = here.map(|e| e.name).collect();
     names.sort_unstable();
     let mut tested = TESTED.to_vec();
     tested.extend(WITH_RECORDINGS);
     tested.sort_unstable();
     assert_eq!(names, tested);
-    names.dedup();
-    assert_eq!(names.len(), lab::catalogue().len());
+    let mut all: Vec<&str> = lab::catalogue().iter().map(|e| e.name).collect();
+    all.sort_unstable();
+    all.dedup();
+    assert_eq!(all.len(), lab::catalogue().len());
 }

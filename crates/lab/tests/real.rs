@@ -54,6 +54,20 @@ fn one_bristle_halves_the_error_of_lugre_on_the_measured_loop() {
     assert!(bristle < 0.08 && bristle < 0.6 * lugre && lugre < coulomb);
 }
 
+#[test]
+fn both_experiments_hold_and_draw() {
+    if recordings("both_experiments_hold_and_draw").is_none() {
+        return;
+    }
+    for name in ["cube-tosses", "fretting"] {
+        let outcome = (lab::find(name).unwrap().run)(&lab::Options { quick: true, ..lab::Options::default() }).unwrap();
+        assert!(outcome.holds() && outcome.figures.len() > 10 && outcome.charts.len() == 2, "{name}");
+        assert!(outcome.charts.iter().all(|c| !lab::chart_svg(c).contains("NaN")), "{name}");
+        let recorded = outcome.run.is_some_and(|(log, _)| log.signals.times.len() > 80);
+        assert_eq!(recorded, name == "cube-tosses");
+    }
+}
+
 /// A flight of a cube with a known start under `gravity`, sampled like the recording; it ends on the way down.
 fn flight(gravity: f64) -> (Start, Toss) {
     let twist = Twist::new(Vec3::new(3.0, -2.0, 1.0), Vec3::new(1.0, 0.3, 0.2));
