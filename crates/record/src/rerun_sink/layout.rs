@@ -83,7 +83,7 @@ fn left_side(log: &Log, scene: &Scene, look: &Look) -> Node {
 }
 
 fn overview(look: &Look) -> Node {
-    let eye = look.centre + Vec3::from(EYE_DIRECTION).normalize() * look.radius * 2.2;
+    let eye = look.centre + Vec3::from(EYE_DIRECTION).normalize() * look.radius * 1.9;
     let view = View::new("3D", "Overview", "/world");
     with_space_properties(view, eye, look.centre).into()
 }
