@@ -67,7 +67,7 @@ pub enum RealError {
 
 /// The folder of the recordings: as given, else from the environment.
 pub fn find_folder(given: Option<&Path>) -> Result<PathBuf, RealError> {
-    let from_environment = || std::env::var_os(RECORDINGS).map(PathBuf::from);
+    let from_environment = || std::env::var_os(RECORDINGS).filter(|folder| !folder.is_empty()).map(PathBuf::from);
     given.map(Path::to_owned).or_else(from_environment).ok_or(RealError::NoFolder)
 }
 
