@@ -3,7 +3,7 @@
 //! An [`Experiment`] is a name, a question and a function; it answers with an [`Outcome`]: figures that say what they
 //! should be and whether they are, charts, and where there is something to see the log of a run with its scene.
 //!
-//! **scene** ([`bench`]: a [`sim::ModelSpec`] with what is seen) → **run** ([`bench::Rig`]) → figures and charts → files
+//! **scene** ([`mod@bench`]: a [`sim::ModelSpec`] with what is seen) → **run** ([`bench::Rig`]) → figures and charts → files
 //! ([`report`], [`chart_svg`]). One file per experiment in `experiments/`; the closed forms that need more than a line stand
 //! in `exact/`, with their own tests.
 
