@@ -256,7 +256,7 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
     for i in 0..ws.touches.len() {
         ws.touches[i].carried = calc_carried(model, ws, &ws.touches[i]) * h;
         let law = &model.laws[ws.touches[i].pair as usize];
-        ws.touches[i].rest = law.friction.map_or(1.0, |f| f.initial_rest());
+        ws.touches[i].rest = law.friction.as_ref().map_or(1.0, Friction::initial_rest);
         if let Some(grain) = &law.grain {
             ws.touches[i].grain = grain.calc_direction(&ws.touches[i]);
         }
@@ -327,9 +327,15 @@ impl Turned<'_> {
     /// A deflection of the plane normal to `n`, carried with both bodies into the plane normal to `to`.
     #[inline]
     pub fn deflection(&self, (a, b): (usize, usize), s: &Vec3, n: &Vec3, to: &Vec3) -> Vec3 {
-        let one = |body: usize| carry(&self.with(body, s), &self.with(body, n), to);
-        mean_of(&one(a), &one(b))
+        let with = |v: &Vec3| (self.with(a, v), self.with(b, v));
+        carry_with_both(with(s), with(n), to)
     }
+}
+
+/// A deflection as either body turned it, each carried from that body's normal into the plane normal to `to`: their mean.
+#[inline]
+fn carry_with_both((s_a, s_b): (Vec3, Vec3), (n_a, n_b): (Vec3, Vec3), to: &Vec3) -> Vec3 {
+    mean_of(&carry(&s_a, &n_a, to), &carry(&s_b, &n_b, to))
 }
 
 impl Touch {
@@ -346,14 +352,12 @@ impl Touch {
     /// deflection `s` of the plane of detection, and what has slipped since, W axes.
     fn remembered(&self, s: &Vec3, slipped: &Vec3, (a, b): (&Frame, &Frame)) -> ContactMemory {
         let with = |v: &Vec3| (a.rot * self.rot_a.tr_mul(v), b.rot * self.rot_b.tr_mul(v));
-        let ((n_a, n_b), (s_a, s_b)) = (with(&self.normal), with(s));
-        let normal_w = mean_of(&n_a, &n_b);
-        let carried = mean_of(&carry(&s_a, &n_a, &normal_w), &carry(&s_b, &n_b, &normal_w));
-        let s_w = carried + slipped - normal_w * normal_w.dot(slipped);
+        let normals = with(&self.normal);
+        let normal_w = mean_of(&normals.0, &normals.1);
+        let s_w = carry_with_both(with(s), normals, &normal_w) + slipped - normal_w * normal_w.dot(slipped);
         let mut turn_w = self.turn;
         if turn_w != Vec3::zeros() {
-            let (t_a, t_b) = with(&turn_w);
-            turn_w = mean_of(&carry(&t_a, &n_a, &normal_w), &carry(&t_b, &n_b, &normal_w));
+            turn_w = carry_with_both(with(&turn_w), normals, &normal_w);
         }
         let Self { pair, feature, local_b: point_b, .. } = *self;
         ContactMemory { pair, feature, s_w, normal_w, turn_w, rest: self.out.rest, point_b }

@@ -11,7 +11,7 @@
 //! Derivation, costs and the traps: crate documentation.
 
 use crate::actuator::{ActuatorKind, CoordinatePoint};
-use crate::contacts::{Place, Touch, commit_bristles, find_touches};
+use crate::contacts::{Outcome, Place, Touch, commit_bristles, find_touches};
 use crate::mechanism;
 use crate::model::{Base, Model};
 use crate::pivots;
@@ -285,17 +285,18 @@ fn classical_gain(gain: &Twist, base: &Twist, h: f64) -> Twist {
 fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
     let mut check = PairCheck::default();
     for i in 0..ws.touches.len() {
-        let mut touch = ws.touches[i];
-        let gain = relative_gain(model, ws, &touch);
-        let force = touch.out.line - touch.out.g * gain / h;
-        let next = touch.eval(&model.laws[touch.pair as usize], &(touch.u + touch.carried + gain), h);
-        // A bound of friction that the normal force does not bear out is a miss as well.
+        let gain = relative_gain(model, ws, &ws.touches[i]);
+        let touch = &mut ws.touches[i];
         let law = &model.laws[touch.pair as usize];
-        let unborne = law.friction.map_or(0.0, |f| f.highest_level() * (next.pressing[0] - next.normal_force).abs());
-        check.add(touch.pair, (next.law - force).norm().max(unborne), next.law.norm());
-        touch.out = next;
-        touch.out.force = force;
-        ws.touches[i] = touch;
+        let force = touch.out.line - touch.out.g * gain / h;
+        let next = touch.eval(law, &(touch.u + touch.carried + gain), h);
+        let mut miss = (next.law - force).norm();
+        if let Some(friction) = law.friction.as_ref().filter(|_| next.pressing[0] != next.normal_force) {
+            // A bound of friction that the normal force does not bear out is a miss as well.
+            miss = miss.max(friction.highest_level() * (next.pressing[0] - next.normal_force).abs());
+        }
+        check.add(touch.pair, miss, next.law.norm());
+        touch.out = Outcome { force, ..next };
     }
     let mut joints_hold = true;
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
