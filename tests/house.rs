@@ -6,7 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The one total order.
-const ORDER: [&str; 8] = ["spatial", "friction", "contact", "multibody", "sim", "record", "lab", "scenario"];
+const ORDER: [&str; 9] =
+    ["spatial", "friction", "contact", "multibody", "sim", "record", "lab", "scenario", "diagnose"];
 
 /// The wall.
 const LONGEST_FILE: usize = 600;

@@ -1,0 +1,4 @@
+//! Where simulation and recording differ: locate it, name it, model it, show the fit improve.
+//!
+//! **scenario + recording → replay → residual → locate → hypotheses → fit → rank → report.** To diagnose is to search over
+//! `[[effect]]` entries of a copy of the scenario; every hypothesis is simulated by the same `sim` that runs scenarios.
