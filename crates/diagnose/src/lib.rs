@@ -2,3 +2,14 @@
 //!
 //! **scenario + recording → replay → residual → locate → hypotheses → fit → rank → report.** To diagnose is to search over
 //! `[[effect]]` entries of a copy of the scenario; every hypothesis is simulated by the same `sim` that runs scenarios.
+
+pub mod error;
+pub mod guess;
+pub mod linear;
+pub mod plant;
+pub mod reading;
+pub mod replay;
+pub mod start;
+pub mod tape;
+
+pub use error::DiagnoseError;
