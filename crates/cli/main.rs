@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout)] // a command prints
 
 mod check;
+mod diagnose;
 mod lab;
 mod live;
 mod new;
@@ -50,6 +51,8 @@ enum Subcommands {
     View(view::Arguments),
     /// Small experiments on contact and friction, each figure beside its closed form
     Lab(lab::Arguments),
+    /// Where a scenario and a recording differ, what was left out, and how much better it predicts with it
+    Diagnose(diagnose::Arguments),
     /// Print the JSON Schema of the scenario file
     Schema,
 }
@@ -72,6 +75,7 @@ fn main() -> ExitCode {
         Subcommands::New(arguments) => new::main(&arguments),
         Subcommands::View(arguments) => view::main(&arguments),
         Subcommands::Lab(arguments) => lab::main(&arguments),
+        Subcommands::Diagnose(arguments) => diagnose::main(&arguments),
         Subcommands::Schema => schema::main(),
     };
     match result {

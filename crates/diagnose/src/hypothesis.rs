@@ -197,6 +197,45 @@ impl Hypothesis {
         }
     }
 
+    /// Coordinates to begin a refit with, from the amplitudes of a screen point's columns; `None` where they are not possible.
+    ///
+    /// Beside neutral the columns add up. Of secants, amplitudes add up to a strength that scales the coordinate which turns the effect on.
+    pub fn start_from(&self, point: &ScreenPoint, amplitudes: &[f64]) -> Option<Vec<f64>> {
+        let columns = &point.columns;
+        if columns.iter().any(|c| !c.secant) {
+            let mut x = columns[0].base.clone();
+            for (column, amplitude) in columns.iter().zip(amplitudes) {
+                x.iter_mut().zip(&column.direction).for_each(|(x, d)| *x += amplitude * d);
+            }
+            let clamped = self.clamped(&x);
+            let lost = |k: usize| clamped[k] != x[k] && (clamped[k] - self.coordinates[k].neutral).abs() < 1e-12;
+            // A level that would have to be negative explains nothing.
+            let moving = (0..x.len()).filter(|k| columns.iter().any(|c| c.direction[*k] != 0.0));
+            return (!moving.clone().all(lost)).then_some(clamped);
+        }
+        let strength: f64 = amplitudes.iter().sum();
+        let mean = |k: usize| {
+            let weights = amplitudes.iter().map(|w| w.max(0.0)).sum::<f64>().max(1e-30);
+            columns.iter().zip(amplitudes).map(|(c, w)| w.max(0.0) * c.direction[k]).sum::<f64>() / weights
+        };
+        if self.encoding == Encoding::Moment {
+            let sum = |k: usize| columns.iter().zip(amplitudes).map(|(c, w)| w * c.direction[k]).sum::<f64>();
+            return (strength > 0.0).then(|| self.clamped(&(0..self.coordinates.len()).map(sum).collect::<Vec<_>>()));
+        }
+        if strength <= 0.0 {
+            return None;
+        }
+        let mut x: Vec<f64> = (0..self.coordinates.len()).map(mean).collect();
+        match self.name {
+            "joint-elasticity" | "actuator-delay" => x[0] = strength * columns[0].direction[0],
+            "joint-backlash" | "actuator-lag" => x[0] = columns[0].direction[0] + strength.ln(),
+            "mount-compliance" => x[0] -= strength.ln(),
+            "flexible-appendage" => (2..5).for_each(|k| x[k] *= strength.sqrt()),
+            _ => {}
+        }
+        Some(self.clamped(&x))
+    }
+
     /// Standard errors of the parameters from the covariance of the coordinates, by difference quotients of [`Self::decode`].
     pub fn errors(&self, x: &[f64], covariance: &nalgebra::DMatrix<f64>) -> Vec<(&'static str, f64)> {
         let at = self.decode(x);

@@ -47,6 +47,8 @@ pub struct SegmentLinear {
     pub cost: f64,
     /// Free coordinates of the start.
     pub freedoms: Vec<Freedom>,
+    /// How many of them the residual shows.
+    pub shown: usize,
     /// Gram matrix of (G, r) with the start eliminated.
     pub reduced: DMatrix<f64>,
     /// H_ss⁺ H_sp: what the start takes of each column of (G, r).
@@ -119,6 +121,40 @@ impl Stage<'_> {
         done.into_iter().map(|(linear, _)| linear).collect()
     }
 
+    /// Change of the residual per unit of a variation, from the same start.
+    pub fn column(&self, variation: &Variation, segment: &Segment, r: &DVector<f64>) -> DVector<f64> {
+        let start = segment.start.fitted_to(&variation.built);
+        sane((self.residuals_from(&variation.built, segment, &start) - r) / variation.step)
+    }
+
+    /// Derivatives by coordinates of the start.
+    pub fn start_columns(
+        &self,
+        built: &Built,
+        segment: &Segment,
+        r: &DVector<f64>,
+        all: &[Freedom],
+        steps: &mut Steps,
+    ) -> Vec<DVector<f64>> {
+        let sizes = steps.of(segment.run, all);
+        let (columns, sizes): (Vec<_>, Vec<_>) = self.quotients(built, segment, r, (all, &sizes)).into_iter().unzip();
+        steps.keep(segment.run, &sizes);
+        columns
+    }
+
+    fn quotients(
+        &self,
+        built: &Built,
+        segment: &Segment,
+        r: &DVector<f64>,
+        (all, sizes): (&[Freedom], &[f64]),
+    ) -> Vec<(DVector<f64>, f64)> {
+        let of = |(freedom, size): (&Freedom, &f64)| {
+            quotient(r, *size, |step| self.residuals_from(built, segment, &segment.start.moved(*freedom, step)))
+        };
+        all.par_iter().zip(sizes.par_iter()).map(of).collect()
+    }
+
     fn linearise_segment(
         &self,
         built: &Built,
@@ -127,21 +163,8 @@ impl Stage<'_> {
         (all, sizes): (&[Freedom], Vec<f64>),
     ) -> (SegmentLinear, Vec<f64>) {
         let r = self.residuals(built, segment);
-        let of_start: Vec<(DVector<f64>, f64)> = all
-            .par_iter()
-            .zip(sizes)
-            .map(|(freedom, size)| {
-                quotient(&r, size, |step| self.residuals_from(built, segment, &segment.start.moved(*freedom, step)))
-            })
-            .collect();
-        let of_model: Vec<DVector<f64>> = variations
-            .par_iter()
-            .map(|v| {
-                let start = segment.start.fitted_to(&v.built);
-                let moved = self.residuals_from(&v.built, segment, &start);
-                sane((moved - &r) / v.step)
-            })
-            .collect();
+        let of_start = self.quotients(built, segment, &r, (all, &sizes));
+        let of_model: Vec<DVector<f64>> = variations.par_iter().map(|v| self.column(v, segment, &r)).collect();
         let sizes = of_start.iter().map(|(_, size)| *size).collect();
         let s: Vec<&DVector<f64>> = of_start.iter().map(|(column, _)| column).collect();
         let p: Vec<&DVector<f64>> = of_model.iter().chain(std::iter::once(&r)).collect();
@@ -165,7 +188,7 @@ fn quotient(r: &DVector<f64>, first: f64, moved: impl Fn(f64) -> DVector<f64>) -
         let column = moved(step) - r;
         let size = (column.norm_squared() / (r.len().max(1) as f64)).sqrt();
         let fair = (FAIR[0]..FAIR[1]).contains(&size);
-        if fair || trial == 3 {
+        if fair || trial == 3 || size == 0.0 {
             return (sane(column / step), step);
         }
         step *= if size.is_finite() { (WISH / size.max(1e-12)).clamp(1e-4, 1e4) } else { 1e-3 };
@@ -193,7 +216,8 @@ pub fn eliminate(s: &[&DVector<f64>], p: &[&DVector<f64>], freedoms: &[Freedom])
     };
     let reduced = &h_pp - h_sp.transpose() * &taken;
     let r = p[p.len() - 1];
-    SegmentLinear { count: r.len(), cost: finite(r.norm_squared()), freedoms: freedoms.to_vec(), reduced, taken }
+    let shown = scale.iter().filter(|s| **s > 0.0).count();
+    SegmentLinear { count: r.len(), shown, cost: finite(r.norm_squared()), freedoms: freedoms.to_vec(), reduced, taken }
 }
 
 impl SegmentLinear {

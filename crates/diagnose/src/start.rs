@@ -88,6 +88,7 @@ impl Start {
     pub fn world(&self, built: &Built) -> World {
         let mut state = built.start.clone();
         state.time = self.time;
+        state.steps = (self.time / built.model.step).round() as u64;
         state.bases.clone_from(&self.bases);
         state.q.clone_from(&self.q);
         state.v.clone_from(&self.v);

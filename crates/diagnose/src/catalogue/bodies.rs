@@ -94,8 +94,8 @@ fn add_tether(place: &str, all: &mut Vec<Hypothesis>) {
 
 /// Directions of an axis: 13 of a cube's, one of each pair.
 fn axes() -> Vec<Vec3> {
-    let steps = [-1.0, 0.0, 1.0];
-    let all = steps.iter().flat_map(|x| steps.iter().flat_map(move |y| steps.iter().map(move |z| Vec3::new(*x, *y, *z))));
+    let digit = |i: usize, place: usize| (i / 3usize.pow(place as u32) % 3) as f64 - 1.0;
+    let all = (0..27).map(|i| Vec3::new(digit(i, 2), digit(i, 1), digit(i, 0)));
     let first_positive = |d: &Vec3| d.iter().find(|x| **x != 0.0).is_some_and(|x| *x > 0.0);
     all.filter(first_positive).map(|d| d.normalize()).collect()
 }
