@@ -14,9 +14,11 @@
 //! with `recording.toml`, forgiving where a rig is and exact in what it says about it.
 
 mod channel;
+pub mod consistency;
 mod csv_file;
 mod error;
 mod folder;
+//pub mod inspect;
 mod log;
 mod mechanisms;
 mod mesh;

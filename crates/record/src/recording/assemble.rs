@@ -248,8 +248,10 @@ fn add_orientations(
         let read = orientation::read(timeline, [&scaled[0], &scaled[1], &scaled[2], &scaled[3]]);
         merged += read.merged;
         say_orientation(prefix, &read, remarks);
+        // One rounding for all four: a component that hardly moves does not show its own.
+        let steps = sources.map(|s| find_quantum(&values_of(timeline, s.values)) * s.factor.abs());
+        let step = steps.into_iter().fold(0.0, f64::max);
         for (source, values) in sources.into_iter().zip(read.parts) {
-            let step = find_quantum(&values_of(timeline, source.values)) * source.factor.abs();
             series.push(Series::with_quantum(source.channel, read.times.clone(), values, step));
         }
     }

@@ -28,10 +28,39 @@ pub(super) fn find_quantum(values: &[f64]) -> f64 {
     let written = decimal_step(&thinned);
     let start = (values.len().saturating_sub(LOOKED_AT)) / 2;
     let stretch = &values[start..(start + LOOKED_AT).min(values.len())];
-    match encoder_step(stretch) {
+    let is_fixed = (written.log10() - written.log10().round()).abs() < 1e-9;
+    let encoder = if written > 0.0 && is_fixed { step_over(stretch, written) } else { encoder_step(stretch) };
+    match encoder {
         Some(encoder) if encoder > 1.5 * written => encoder.hypot(written),
         _ => written,
     }
+}
+
+/// Step of an encoder whose readings were then rounded to `written`: the highest C(δ) with δ above that rounding.
+///
+/// White differences of standard deviation s have C(δ) = exp(−2π² s²/δ²), so that only δ ≤ 2 s can tell a lattice.
+fn step_over(values: &[f64], written: f64) -> Option<f64> {
+    const FARTHEST: usize = 60;
+    let mut counts = [0.0_f64; FARTHEST + 1];
+    for pair in values.windows(2) {
+        let steps = ((pair[1] - pair[0]) / written).abs().round();
+        if (1.0..=FARTHEST as f64).contains(&steps) {
+            counts[steps as usize] += 1.0;
+        }
+    }
+    let all: f64 = counts.iter().sum();
+    let square: f64 = counts.iter().enumerate().map(|(n, c)| c * (n * n) as f64).sum();
+    if all < FEWEST as f64 {
+        return None;
+    }
+    let widest = 2.0 * (square / all).sqrt();
+    let likeness = |step: f64| -> f64 {
+        counts.iter().enumerate().map(|(n, c)| c * (std::f64::consts::TAU * n as f64 / step).cos()).sum::<f64>() / all
+    };
+    // Equal steps of frequency: C falls by a hundredth over one of them at the farthest difference.
+    let steps = (0..).map(|k| 1.0 / (0.5 - 0.0005 * f64::from(k))).take_while(|step| *step > 0.0 && *step <= widest);
+    let best = steps.take(1000).map(|step| (likeness(step), step)).reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+    (best.0 > LATTICE).then_some(best.1 * written)
 }
 
 /// Number of distinct values, counted up to three.
