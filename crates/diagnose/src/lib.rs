@@ -2,3 +2,9 @@
 //!
 //! **scenario + recording → replay → residual → locate → hypotheses → fit → rank → report.** To diagnose is to search over
 //! `[[effect]]` entries of a copy of the scenario; every hypothesis is simulated by the same `sim` that runs scenarios.
+
+pub mod diagnosis;
+pub mod evidence;
+
+pub use diagnosis::Diagnosis;
+pub use evidence::Evidence;
