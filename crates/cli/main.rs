@@ -11,6 +11,7 @@ mod new;
 mod progress;
 mod run;
 mod schema;
+mod score;
 mod summary;
 mod view;
 
@@ -50,8 +51,10 @@ enum Subcommands {
     View(view::Arguments),
     /// Small experiments on contact and friction, each figure beside its closed form
     Lab(lab::Arguments),
-    /// Print the JSON Schema of the scenario file
-    Schema,
+    /// Judge a folder of diagnoses against answer keys
+    Score(score::Arguments),
+    /// Print the JSON Schema of the scenario file, or of diagnosis.json
+    Schema(schema::Arguments),
 }
 
 /// How a command ended.
@@ -72,7 +75,8 @@ fn main() -> ExitCode {
         Subcommands::New(arguments) => new::main(&arguments),
         Subcommands::View(arguments) => view::main(&arguments),
         Subcommands::Lab(arguments) => lab::main(&arguments),
-        Subcommands::Schema => schema::main(),
+        Subcommands::Score(arguments) => score::main(&arguments),
+        Subcommands::Schema(arguments) => schema::main(&arguments),
     };
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,
