@@ -13,6 +13,7 @@
 
 use super::{Key, KeyEffect};
 use crate::diagnosis::{Found, ParamValue, StdErr};
+use crate::number::short;
 use serde::Serialize;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -50,12 +51,6 @@ impl Judged {
         let found = if found.is_empty() { "not given".to_owned() } else { found };
         format!("{}: {} {found}{errors} instead of {key}", self.effect, self.parameter)
     }
-}
-
-/// Four digits.
-fn short(x: f64) -> String {
-    let text = if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) { format!("{x:.3e}") } else { format!("{x:.4}") };
-    if text.contains('e') { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() }
 }
 
 /// The scale of a free body without known torques: Ixx found over Ixx of the key, where Ixx was held and not fitted; else 1.

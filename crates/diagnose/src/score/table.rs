@@ -52,9 +52,9 @@ impl ScoreTable {
         ]
     }
 
-    /// Whether all requirements are met.
+    /// Whether all requirements are met; by no set none is.
     pub fn holds(&self) -> bool {
-        self.criteria().iter().all(Criterion::holds)
+        !self.sets.is_empty() && self.criteria().iter().all(Criterion::holds)
     }
 
     /// The table as Markdown, for a README: sets, then requirements, then what is wrong.
@@ -65,7 +65,11 @@ impl ScoreTable {
         }
         text.push_str("\n| requirement | right | needed | met |\n| --- | --- | --- | --- |\n");
         for c in self.criteria() {
-            let met = if c.holds() { "yes" } else { "NO" };
+            let met = match (c.of, c.holds()) {
+                (0, _) => "–",
+                (_, true) => "yes",
+                (_, false) => "NO",
+            };
             let _ = writeln!(text, "| {} | {} of {} | {:.0} % | {met} |", c.text, c.right, c.of, 100.0 * c.needed);
         }
         for (set, note) in self.notes() {
@@ -81,7 +85,11 @@ impl ScoreTable {
         let mut text = crate::summary::aligned(&rows);
         text.push('\n');
         for c in self.criteria() {
-            let mark = if c.holds() { "met    " } else { "NOT MET" };
+            let mark = match (c.of, c.holds()) {
+                (0, _) => "–      ",
+                (_, true) => "met    ",
+                (_, false) => "NOT MET",
+            };
             let _ = writeln!(text, "  {mark}  {} of {} {} (needed: {:.0} %)", c.right, c.of, c.text, 100.0 * c.needed);
         }
         if self.notes().next().is_some() {

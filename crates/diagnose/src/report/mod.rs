@@ -1,0 +1,4 @@
+//! x
+mod panel;
+/// x
+pub fn report_html() {}
