@@ -20,8 +20,10 @@ pub(crate) fn digits(x: f64, count: i32) -> String {
             if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
         return minus(&format!("{mantissa}·10{}", superscript(power)));
     }
-    let places = (count - 1 - x.abs().log10().floor() as i32).clamp(0, 9) as usize;
-    let text = format!("{x:.places$}");
+    let places = count - 1 - x.abs().log10().floor() as i32;
+    let coarse = 10_f64.powi((-places).max(0));
+    let text =
+        format!("{:.*}", places.clamp(0, 9) as usize, if coarse > 1.0 { (x / coarse).round() * coarse } else { x });
     minus(if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text })
 }
 
@@ -85,7 +87,7 @@ mod tests {
 
     #[test]
     fn short_numbers_are_short() {
-        let cases = [(0.0, "0"), (12.0, "12"), (0.012_345, "0.01235"), (-3e-7, "−3·10⁻⁷"), (7000.0, "7000")];
+        let cases = [(0.0, "0"), (12.0, "12"), (0.012_345, "0.01235"), (-3e-7, "−3·10⁻⁷"), (16_508.0, "16510")];
         for (x, text) in cases {
             assert_eq!(short(x), text);
         }
