@@ -12,6 +12,7 @@ mod new;
 mod progress;
 mod run;
 mod schema;
+mod score;
 mod summary;
 mod view;
 
@@ -53,8 +54,10 @@ enum Subcommands {
     Lab(lab::Arguments),
     /// Where a scenario and a recording differ, what was left out, and how much better it predicts with it
     Diagnose(diagnose::Arguments),
-    /// Print the JSON Schema of the scenario file
-    Schema,
+    /// Judge a folder of diagnoses against answer keys
+    Score(score::Arguments),
+    /// Print the JSON Schema of the scenario file, or of diagnosis.json
+    Schema(schema::Arguments),
 }
 
 /// How a command ended.
@@ -76,7 +79,8 @@ fn main() -> ExitCode {
         Subcommands::View(arguments) => view::main(&arguments),
         Subcommands::Lab(arguments) => lab::main(&arguments),
         Subcommands::Diagnose(arguments) => diagnose::main(&arguments),
-        Subcommands::Schema => schema::main(),
+        Subcommands::Score(arguments) => score::main(&arguments),
+        Subcommands::Schema(arguments) => schema::main(&arguments),
     };
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,
