@@ -120,7 +120,7 @@ fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
             };
             let commands = tapes.iter().flat_map(|t| &t.commands).filter(|c| drives(c.actuator));
             let largest = commands.flat_map(|c| &c.efforts).fold(0.0_f64, |m, e| m.max(e.abs()));
-            all.push(JointFact { name: joint.name.clone(), coordinate, armature: 0.0, largest_command: largest });
+            all.push(JointFact { name: joint.name.clone(), coordinate, armature: joint.armature, largest_command: largest });
         }
     }
     all

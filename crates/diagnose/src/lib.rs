@@ -17,6 +17,7 @@ pub mod hypothesis;
 pub mod linear;
 mod number;
 mod patched;
+pub mod locate;
 pub mod plant;
 pub mod reading;
 pub mod replay;

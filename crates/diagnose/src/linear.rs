@@ -108,7 +108,7 @@ impl Stage<'_> {
 
     /// Linearises every segment about its start, with a column for each variation.
     pub fn linearise(&self, built: &Built, segments: &[Segment], variations: &[Variation], steps: &mut Steps) -> Vec<SegmentLinear> {
-        let all = freedoms(&built.model);
+        let all = freedoms(built);
         let first: Vec<Vec<f64>> = segments.iter().map(|s| steps.of(s.run, &all)).collect();
         let done: Vec<(SegmentLinear, Vec<f64>)> = segments
             .par_iter()

@@ -53,7 +53,9 @@ pub fn observe(
     let events = events_in(tape, span, &faults);
     let mut world = start.world(built);
     let mut feed = Feed::new(tape, span.from);
+    hear_the_past(built, tape, span.from, &mut world);
     feed.apply(&mut world);
+    start.set_memory(&mut world);
     for (i, event) in &events {
         while feed.next_tick(tape) < event.time - SAME {
             advance_to(&mut world, feed.next_tick(tape), pace).map_err(|what| gone(tape, what))?;
@@ -70,6 +72,19 @@ pub fn observe(
         look(*i, event, &value);
     }
     Ok(())
+}
+
+/// Late actuators still follow commands from before the span.
+fn hear_the_past(built: &Built, tape: &Tape, from: f64, world: &mut World) {
+    if built.delay == 0.0 {
+        return;
+    }
+    let begin = from - 2.0 * built.delay;
+    let first = tape.ticks.partition_point(|t| *t < begin).saturating_sub(1);
+    for tick in tape.ticks[first..].iter().take_while(|t| **t < from - SAME) {
+        Feed::new(tape, *tick).apply(world);
+        world.hear_commands(*tick);
+    }
 }
 
 fn read(_built: &Built, world: &World, quantity: Quantity) -> Value {
@@ -89,7 +104,7 @@ fn advance_to(world: &mut World, time: f64, pace: Pace) -> Result<(), sim::StepE
     let steps = (left / pace.step - 1e-6).ceil().max(1.0) as u32;
     let h = left / f64::from(steps);
     for _ in 0..steps {
-        { let _ = h; world.advance()?; }
+        world.advance_by(h)?;
     }
     Ok(())
 }

@@ -35,7 +35,18 @@ pub fn run(scenario: Scenario, set: &RecordingSet) -> Result<(), DiagnoseError> 
     per_reading(&stage, &Fit { set: EffectSet::default(), built: built.clone(), segments: segments.clone(), cost, count, freedom: 0, covariance: nalgebra::DMatrix::zeros(0, 0), converged: false, iterations: 0 });
     let nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort { iterations: 6, share: 1e-4 })?;
     show("nominal", &nominal, t0);
-    let facts = |f: &Fit| hypotheses(&Facts::new(&f.built, &tapes));
+    let w = window.unwrap_or(tapes[0].span.1);
+    let located = crate::locate::locate(&stage, &plant, &nominal, crate::locate::places(&Facts::new(&nominal.built, &tapes), w))?;
+    for p in located.ranked() {
+        println!("  located {:30} S {:12.1} rank {} share {:.3}", located.places[p].name, located.score(p), located.rank(p), located.share(p));
+    }
+    println!("{:.1} s", t0.elapsed().as_secs_f64());
+    let keep: Vec<String> = located.ranked().into_iter().filter(|p| located.share(*p) > 0.2 * located.share(located.ranked()[0])).map(|p| located.places[p].name.clone()).collect();
+    let facts = |f: &Fit| {
+        let mut h = hypotheses(&Facts::new(&f.built, &tapes));
+        h.retain(|h| !h.place.starts_with("joint:") || keep.contains(&h.place));
+        h
+    };
     let limits = Limits { effects: 3, refits: 4, sigmas: 4.0 };
     let (found, attempts) = search(&stage, &plant, nominal, &facts, &limits)?;
     for a in attempts.iter().filter(|a| a.fall.is_some() || a.share > 0.02) {

@@ -155,6 +155,15 @@ impl World {
         effect::next_switch(&self.state)
     }
 
+    /// Lets delayed actuators take the present commands as given at `time`, s: what was commanded
+    /// before a replay begins acts in it still.
+    pub fn hear_commands(&mut self, time: f64) {
+        let now = self.state.time;
+        self.state.time = time;
+        effect::accept(&self.model, &mut self.state);
+        self.state.time = now;
+    }
+
     /// Sets the effects' memory that depends on commands to rest under the present ones: a gear that yields carries the
     /// drive's effort, a lag has passed. The first step does it by itself; a caller who wants to start from other memory
     /// calls this before and changes [`State::effects`] then.
