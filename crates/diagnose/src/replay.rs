@@ -81,10 +81,12 @@ fn hear_the_past(built: &Built, tape: &Tape, from: f64, world: &mut World) {
     }
     let begin = from - 2.0 * built.delay;
     let first = tape.ticks.partition_point(|t| *t < begin).saturating_sub(1);
-    for tick in tape.ticks[first..].iter().take_while(|t| **t < from - SAME) {
+    let heard = |tick: &f64| {
         Feed::new(tape, *tick).apply(world);
-        world.hear_commands(*tick);
-    }
+        (*tick, world.state().commands.clone())
+    };
+    let past: Vec<_> = tape.ticks[first..].iter().take_while(|t| **t < from - SAME).map(heard).collect();
+    world.recall_commands(past.iter().map(|(time, commands)| (*time, commands.as_slice())));
 }
 
 fn read(_built: &Built, world: &World, quantity: Quantity) -> Value {

@@ -155,13 +155,18 @@ impl World {
         effect::next_switch(&self.state)
     }
 
-    /// Lets delayed actuators take the present commands as given at `time`, s: what was commanded
-    /// before a replay begins acts in it still.
-    pub fn hear_commands(&mut self, time: f64) {
-        let now = self.state.time;
-        self.state.time = time;
-        effect::accept(&self.model, &mut self.state);
-        self.state.time = now;
+    /// Tells what was commanded before the present time, in order of time: commands that an effect delays act from now on
+    /// as if the world had run through them. The present commands are left as they are.
+    pub fn recall_commands<'a>(&mut self, past: impl IntoIterator<Item = (f64, &'a [Command])>) {
+        let (now, present) = (self.state.time, self.state.commands.clone());
+        self.state.acting.clear();
+        self.state.pending.clear();
+        for (time, commands) in past {
+            self.state.time = time;
+            self.state.commands.copy_from_slice(commands);
+            effect::accept(&self.model, &mut self.state);
+        }
+        (self.state.time, self.state.commands) = (now, present);
     }
 
     /// Sets the effects' memory that depends on commands to rest under the present ones: a gear that yields carries the
