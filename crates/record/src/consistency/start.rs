@@ -94,6 +94,14 @@ fn window(track: &Track, (from, to): (usize, usize), turn: fn(Rot) -> Rot, in_wo
     Some((change / dt, readings.iter().sum::<Vec3>() / readings.len() as f64))
 }
 
+/// Axes about which the positions move, beside the one that moves most.
+fn moving(axes: usize, windows: &[Window]) -> [bool; 3] {
+    const SHARE: f64 = 0.2;
+    let square = |j: usize| windows.iter().map(|w| w.0[j] * w.0[j]).sum::<f64>();
+    let most = (0..axes).map(square).fold(0.0, f64::max);
+    std::array::from_fn(|j| j < axes && square(j) > SHARE * SHARE * most)
+}
+
 /// Least squares of reading = S rate + b; the share of the readings' variance that it explains.
 fn regress(axes: usize, windows: &[Window]) -> Option<(Mat3, Vec3, f64)> {
     if windows.len() < 4 * (axes + 1) {
@@ -109,6 +117,11 @@ fn regress(axes: usize, windows: &[Window]) -> Option<(Mat3, Vec3, f64)> {
     }
     let ridge = 1e-9 * normal.diagonal().iter().take(axes).copied().fold(0.0, f64::max);
     (0..axes).for_each(|i| normal[(i, i)] += ridge);
+    let kept = moving(axes, windows);
+    for j in (0..axes).filter(|j| !kept[*j]) {
+        // An axis about which nothing moves says nothing: its column is held at 0 here and filled in below.
+        normal[(j, j)] += 1e9 * normal.diagonal().max().max(1.0);
+    }
     let solution = normal.try_inverse()? * right;
     let mean = windows.iter().map(|w| w.1).sum::<Vec3>() / windows.len() as f64;
     let (mut rest, mut all) = (0.0, 0.0);
@@ -123,5 +136,8 @@ fn regress(axes: usize, windows: &[Window]) -> Option<(Mat3, Vec3, f64)> {
         (0..axes).for_each(|j| sensor[(i, j)] = solution[(j, i)]);
         bias[i] = solution[(axes, i)];
     }
+    let moving: Vec<usize> = (0..axes).filter(|j| kept[*j]).collect();
+    let size = moving.iter().map(|j| sensor.column(*j).norm()).sum::<f64>() / moving.len().max(1) as f64;
+    (0..axes).filter(|j| !kept[*j]).for_each(|j| sensor.set_column(j, &(Vec3::ith(j, size))));
     (all > 0.0).then(|| (sensor, bias, 1.0 - rest / all))
 }
