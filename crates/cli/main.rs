@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout)] // a command prints
 
 mod check;
+mod inspect;
 mod lab;
 mod live;
 mod new;
@@ -50,6 +51,8 @@ enum Subcommands {
     View(view::Arguments),
     /// Small experiments on contact and friction, each figure beside its closed form
     Lab(lab::Arguments),
+    /// Show what is in a recording: channels, rates, gaps, noise, and what is wrong with it
+    Inspect(inspect::Arguments),
     /// Print the JSON Schema of the scenario file
     Schema,
 }
@@ -72,6 +75,7 @@ fn main() -> ExitCode {
         Subcommands::New(arguments) => new::main(&arguments),
         Subcommands::View(arguments) => view::main(&arguments),
         Subcommands::Lab(arguments) => lab::main(&arguments),
+        Subcommands::Inspect(arguments) => inspect::main(&arguments),
         Subcommands::Schema => schema::main(),
     };
     match result {

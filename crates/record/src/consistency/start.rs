@@ -15,6 +15,8 @@ const WINDOWS: usize = 60;
 const TURN: f64 = 1.0;
 /// Share of the readings' variance that the crude law must explain before it is believed.
 const BELIEVED: f64 = 0.8;
+/// Distance from the ideal sensor, but for its size, within which a convention is taken for the right one.
+const NEAR: f64 = 0.4;
 /// Distance from the ideal sensor from which the crude law is the better start.
 const FAR: f64 = 0.1;
 
@@ -40,10 +42,13 @@ pub(super) fn other_convention(pair: &Pair, tracks: &[Track]) -> Option<&'static
     if !pair.is_rotation {
         return None;
     }
-    let explained = |turn: fn(Rot) -> Rot, world: bool| {
-        regress(3, &windows(tracks, turn, world)).map_or(0.0, |(_, _, explained)| explained)
+    // A sensor as it should be, but for its unit and some misalignment.
+    let fits = |turn: fn(Rot) -> Rot, world: bool| {
+        let Some((sensor, _, explained)) = regress(3, &windows(tracks, turn, world)) else { return false };
+        let size = sensor.determinant().cbrt();
+        explained > BELIEVED && size > 0.0 && (sensor / size - Mat3::identity()).norm() < NEAR
     };
-    if explained(|q| q, false) > BELIEVED {
+    if fits(|q| q, false) {
         return None;
     }
     let others: [(fn(Rot) -> Rot, bool, &str); 3] = [
@@ -51,7 +56,7 @@ pub(super) fn other_convention(pair: &Pair, tracks: &[Track]) -> Option<&'static
         (|q| q, true, "the angular velocity seems to be in world axes: the format wants it in the body frame"),
         (last_first, false, "the quaternion's components seem to be in the order x, y, z, w: map the columns anew"),
     ];
-    others.into_iter().find(|(turn, world, _)| explained(*turn, *world) > BELIEVED).map(|(_, _, what)| what)
+    others.into_iter().find(|(turn, world, _)| fits(*turn, *world)).map(|(_, _, what)| what)
 }
 
 fn last_first(q: Rot) -> Rot {

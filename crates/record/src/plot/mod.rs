@@ -3,7 +3,10 @@
 //! One panel per set of axes ([`crate::Axes`]): time across, one line per channel, a legend with each channel's last value,
 //! and a dashed line at every event; the events in words at the end. Lines are thinned to what the panel's width can show: least and largest value per pixel.
 
+mod recorded;
 mod scale;
+
+pub use recorded::recording_svg;
 
 use crate::{Axes, Log, Plot};
 use scale::{Scale, shown};
