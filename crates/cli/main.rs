@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout)] // a command prints
 
 mod check;
+mod diagnose;
 mod lab;
 mod live;
 mod new;
@@ -51,6 +52,8 @@ enum Subcommands {
     View(view::Arguments),
     /// Small experiments on contact and friction, each figure beside its closed form
     Lab(lab::Arguments),
+    /// Where a scenario and a recording differ, what was left out, and how much better it predicts with it
+    Diagnose(diagnose::Arguments),
     /// Judge a folder of diagnoses against answer keys
     Score(score::Arguments),
     /// Print the JSON Schema of the scenario file, or of diagnosis.json
@@ -75,6 +78,7 @@ fn main() -> ExitCode {
         Subcommands::New(arguments) => new::main(&arguments),
         Subcommands::View(arguments) => view::main(&arguments),
         Subcommands::Lab(arguments) => lab::main(&arguments),
+        Subcommands::Diagnose(arguments) => diagnose::main(&arguments),
         Subcommands::Score(arguments) => score::main(&arguments),
         Subcommands::Schema(arguments) => schema::main(&arguments),
     };
