@@ -73,6 +73,30 @@ fn overrides_are_written_out_and_an_effect_that_was_there_is_replaced() {
     assert_eq!(friction.params["c"], ParamValue::Number(0.5));
 }
 
+#[cfg(unix)]
+#[test]
+fn a_folder_behind_a_link_that_is_not_there_yet_sees_the_file() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::create_dir_all(dir.path().join("deep/er")).unwrap();
+    std::os::unix::fs::symlink(dir.path().join("deep/er"), dir.path().join("link")).unwrap();
+    std::fs::write(dir.path().join("x.urdf"), "").unwrap();
+    assert_eq!(path_between(&dir.path().join("link/new"), &dir.path().join("x.urdf")), "../../../x.urdf");
+}
+
+#[test]
+fn the_files_of_a_diagnosis_are_written_for_the_place_where_they_will_stand() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("out/deep");
+    let folder = record::OutputFolder::create(&target).unwrap();
+    crate::write_diagnosis(&folder, &scenario(&[]), &diagnosis(), &crate::Evidence::default()).unwrap();
+    let stands = folder.finish(&serde_json::Map::new()).unwrap();
+    for file in [crate::DIAGNOSIS_FILE, crate::report::FILE] {
+        assert!(stands.join(file).is_file(), "{file}");
+    }
+    let patched = scenario::load(&stands.join(FILE), &[]).unwrap();
+    assert!(patched.resolve(&patched.vehicles[0].urdf).is_file());
+}
+
 #[test]
 fn paths_go_up_and_down_and_are_absolute_where_nothing_is_shared() {
     let dir = tempfile::tempdir().unwrap();

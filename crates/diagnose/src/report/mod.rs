@@ -107,7 +107,8 @@ fn tiles(diagnosis: &Diagnosis, evidence: &Evidence) -> Vec<(&'static str, Strin
         tiles.push(("when", when_words(first, evidence), first.condition.clone()));
     }
     if let Some(test) = evidence.detection.as_ref().filter(|_| diagnosis.verdict == Verdict::NoMismatch) {
-        let bound = format!("noise alone passes {} with {}", crate::number::short(test.bound), percent(test.false_alarm));
+        let bound =
+            format!("noise alone passes {} with {}", crate::number::short(test.bound), percent(test.false_alarm));
         tiles.push(("test for a mismatch", crate::number::short(test.value), bound));
     }
     let error = &diagnosis.error;
