@@ -48,14 +48,20 @@ fn a_patched_scenario_keeps_its_text_says_its_errors_and_loads() {
 }
 
 #[test]
-fn without_an_effect_that_the_model_must_know_it_runs_from_another_folder() {
+fn a_patched_scenario_builds_and_runs_from_another_folder_with_the_effect_in_it() {
     let dir = tempfile::tempdir().unwrap();
-    let bare = Diagnosis { effects: Vec::new(), ..diagnosis() };
-    let file = dir.path().join(FILE);
-    std::fs::write(&file, patched_toml(&scenario(&[]), &bare, dir.path()).unwrap()).unwrap();
-    let mut mission = scenario::build(&scenario::load(&file, &[]).unwrap()).unwrap();
-    let ended = mission.world.run(20, &*mission.controller, &mut []);
-    assert!(mission.world.state().time > 0.0, "{ended:?}");
+    let mut one = diagnosis();
+    one.effects.truncate(1);
+    let end = |diagnosis: &Diagnosis| {
+        let file = dir.path().join(FILE);
+        std::fs::write(&file, patched_toml(&scenario(&[]), diagnosis, dir.path()).unwrap()).unwrap();
+        let mut mission = scenario::build(&scenario::load(&file, &[]).unwrap()).unwrap();
+        mission.world.run(50, &*mission.controller, &mut []).unwrap();
+        mission.world.state().clone()
+    };
+    let (nominal, patched) = (end(&Diagnosis { effects: Vec::new(), ..diagnosis() }), end(&one));
+    assert!(nominal.time > 0.0 && nominal.time == patched.time);
+    assert_ne!(format!("{nominal:?}"), format!("{patched:?}"), "the friction that was found acts");
 }
 
 #[test]
