@@ -42,6 +42,7 @@ fn a_report_is_one_small_page_that_needs_nothing_else() {
         let page = report_html(&diagnosis, &evidence);
         let file = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report-{name}.html"));
         std::fs::write(&file, &page).unwrap();
+        std::fs::write(file.with_extension("txt"), summary_text(&diagnosis, &evidence)).unwrap();
         assert!(page.len() < LARGEST, "{name}: {} bytes", page.len());
         assert_nested(&page);
         for word in ["NaN", "inf\"", "http:", "https:", "src=", "@import", "url("] {

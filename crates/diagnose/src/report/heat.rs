@@ -65,9 +65,9 @@ fn add_run(text: &mut String, heat: &Heat, is_open: bool) {
         Some(window) => format!("state estimated anew every {} s", short(window)),
         None => "one free run".to_owned(),
     };
-    let _ = write!(
+    let _ = writeln!(
         text,
-        "<details class=\"heat\"{}><summary>{} <em>{}</em> <span>{how}</span></summary>\n",
+        "<details class=\"heat\"{}><summary>{} <em>{}</em> <span>{how}</span></summary>",
         if is_open { " open" } else { "" },
         escape(&heat.run),
         heat.role.word()
