@@ -72,7 +72,10 @@ fn collect_faults(effects: &[&Effect]) -> Vec<(String, SensorFault)> {
 impl Built {
     /// Fault of the sensor behind a channel.
     pub fn fault(&self, channel: &str) -> SensorFault {
-        self.faults.iter().find(|(prefix, _)| channel.starts_with(prefix.as_str())).map_or_else(SensorFault::default, |f| f.1)
+        self.faults
+            .iter()
+            .find(|(prefix, _)| channel.starts_with(prefix.as_str()))
+            .map_or_else(SensorFault::default, |f| f.1)
     }
 
     /// What a vector channel (without its component) measures; `None` where the scenario has nothing of that name.
@@ -95,7 +98,8 @@ impl Built {
         let actuators = &self.model.actuators;
         if let Some(joint) = channel.strip_prefix("joint.").and_then(|c| c.strip_suffix(".effort_command")) {
             let (_, v) = self.joint(joint)?;
-            let drives = |k: &ActuatorKind| matches!(k, ActuatorKind::JointEffort { coordinate, .. } if *coordinate == v);
+            let drives =
+                |k: &ActuatorKind| matches!(k, ActuatorKind::JointEffort { coordinate, .. } if *coordinate == v);
             return actuators.iter().position(|a| drives(&a.kind)).map(|i| (i, 1.0));
         }
         let name = channel.strip_prefix("actuator.")?.strip_suffix(".command")?;
@@ -107,10 +111,12 @@ impl Built {
     /// Indices into `q` and `v` of a joint with one coordinate, by `joint` where unique or `vehicle/joint`.
     fn joint(&self, name: &str) -> Option<(usize, usize)> {
         let all = self.model.vehicles.iter().flat_map(|vehicle| {
-            let single = |j: &&multibody::Joint| matches!(j.kind, JointKind::Revolute | JointKind::Prismatic) && !j.is_mimic;
+            let single =
+                |j: &&multibody::Joint| matches!(j.kind, JointKind::Revolute | JointKind::Prismatic) && !j.is_mimic;
             vehicle.tree.joints.iter().filter(single).map(move |j| (vehicle, j))
         });
-        let named = |(v, j): &(&sim::Vehicle, &multibody::Joint)| j.name == name || format!("{}/{}", v.name, j.name) == name;
+        let named =
+            |(v, j): &(&sim::Vehicle, &multibody::Joint)| j.name == name || format!("{}/{}", v.name, j.name) == name;
         all.filter(named).map(|(v, j)| (v.q0 + j.q_index, v.v0 + j.v_index)).next()
     }
 
@@ -119,9 +125,12 @@ impl Built {
         if let Some((vehicle, link)) = self.model.link(name) {
             return Some(LinkPlace { vehicle, link });
         }
-        let by_link = self.model.vehicles.iter().enumerate().find_map(|(vehicle, v)| {
-            v.tree.link(name).map(|link| LinkPlace { vehicle, link })
-        });
+        let by_link = self
+            .model
+            .vehicles
+            .iter()
+            .enumerate()
+            .find_map(|(vehicle, v)| v.tree.link(name).map(|link| LinkPlace { vehicle, link }));
         by_link.or_else(|| self.model.vehicle(name).map(|vehicle| LinkPlace { vehicle, link: 0 }))
     }
 }

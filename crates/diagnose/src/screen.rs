@@ -183,7 +183,9 @@ fn score(
         return None;
     }
     let (a, b) = project_active(k, active, n);
-    let scale = DVector::from_fn(n, |i, _| if a[(i, i)] > 1e-12 * k[(active + i, active + i)].max(1e-30) { a[(i, i)].sqrt() } else { 0.0 });
+    let scale = DVector::from_fn(n, |i, _| {
+        if a[(i, i)] > 1e-12 * k[(active + i, active + i)].max(1e-30) { a[(i, i)].sqrt() } else { 0.0 }
+    });
     let rank = scale.iter().filter(|s| **s > 0.0).count();
     let inverse = pseudo_inverse(&a);
     let amplitudes = -(&inverse * &b);

@@ -32,7 +32,20 @@ pub fn run(scenario: Scenario, set: &RecordingSet) -> Result<(), DiagnoseError> 
     println!("{} segments, {:.1} s", segments.len(), t0.elapsed().as_secs_f64());
     let (cost, count) = stage.cost(&built, &segments);
     println!("guess rms {:.3}  {:.2} s", (cost / count as f64).sqrt(), t0.elapsed().as_secs_f64());
-    per_reading(&stage, &Fit { set: EffectSet::default(), built: built.clone(), segments: segments.clone(), cost, count, freedom: 0, covariance: nalgebra::DMatrix::zeros(0, 0), converged: false, iterations: 0 });
+    per_reading(
+        &stage,
+        &Fit {
+            set: EffectSet::default(),
+            built: built.clone(),
+            segments: segments.clone(),
+            cost,
+            count,
+            freedom: 0,
+            covariance: nalgebra::DMatrix::zeros(0, 0),
+            converged: false,
+            iterations: 0,
+        },
+    );
     let nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort { iterations: 6, share: 1e-4 })?;
     show("nominal", &nominal, t0);
     let w = window.unwrap_or(tapes[0].span.1);
@@ -52,7 +65,16 @@ pub fn run(scenario: Scenario, set: &RecordingSet) -> Result<(), DiagnoseError> 
     for a in attempts.iter().filter(|a| a.fall.is_some() || a.share > 0.02) {
         println!(
             "  {} {:28} {:24} S {:11.1} share {:.4} fall {:?} gain {:?} p {} {} {:?}",
-            a.round, a.name, a.place, a.score, a.share, a.fall, a.gain, a.parameters, if a.kept { "KEPT" } else { "" }, a.found
+            a.round,
+            a.name,
+            a.place,
+            a.score,
+            a.share,
+            a.fall,
+            a.gain,
+            a.parameters,
+            if a.kept { "KEPT" } else { "" },
+            a.found
         );
     }
     show("found", &found, t0);
@@ -62,7 +84,13 @@ pub fn run(scenario: Scenario, set: &RecordingSet) -> Result<(), DiagnoseError> 
 fn show(what: &str, f: &Fit, t0: std::time::Instant) {
     println!(
         "{what}: rms {:.4} excess {:.0} ({:.1} sd) it {} conv {} N {}  {:.2} s",
-        f.rms(), f.excess(), f.excess() / f.spread(), f.iterations, f.converged, f.count, t0.elapsed().as_secs_f64()
+        f.rms(),
+        f.excess(),
+        f.excess() / f.spread(),
+        f.iterations,
+        f.converged,
+        f.count,
+        t0.elapsed().as_secs_f64()
     );
     for (h, x) in &f.set.members {
         println!("   {} {:?}", h.title(), h.decode(x));
@@ -82,7 +110,16 @@ pub fn per_reading(stage: &Stage<'_>, f: &Fit) {
                     at.extend(r.iter().skip(o).take(reading.width()));
                 }
             }
-            println!("   {} {} sigma {:.3e} n {} rms {:.3} first {:?} last {:?}", tape.file, reading.channel, reading.sigma, at.len(), (at.iter().map(|x| x * x).sum::<f64>() / at.len() as f64).sqrt(), &at[..6.min(at.len())], &at[at.len().saturating_sub(3)..]);
+            println!(
+                "   {} {} sigma {:.3e} n {} rms {:.3} first {:?} last {:?}",
+                tape.file,
+                reading.channel,
+                reading.sigma,
+                at.len(),
+                (at.iter().map(|x| x * x).sum::<f64>() / at.len() as f64).sqrt(),
+                &at[..6.min(at.len())],
+                &at[at.len().saturating_sub(3)..]
+            );
         }
     }
 }
