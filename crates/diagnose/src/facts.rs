@@ -119,7 +119,12 @@ fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
             let drives = |i: usize| matches!(built.model.actuators[i].kind, ActuatorKind::JointEffort { coordinate: c, .. } if c == coordinate);
             let commands = tapes.iter().flat_map(|t| &t.commands).filter(|c| drives(c.actuator));
             let largest = commands.flat_map(|c| &c.efforts).fold(0.0_f64, |m, e| m.max(e.abs()));
-            all.push(JointFact { name: joint.name.clone(), coordinate, armature: joint.armature, largest_command: largest });
+            all.push(JointFact {
+                name: joint.name.clone(),
+                coordinate,
+                armature: joint.armature,
+                largest_command: largest,
+            });
         }
     }
     all

@@ -33,7 +33,8 @@ impl Plant {
     /// Builds the nominal scenario with `effects` added to its own.
     pub fn build(&self, effects: &[Effect]) -> Result<Built, DiagnoseError> {
         let mut scenario = self.scenario.clone();
-        let (faults, physics): (Vec<&Effect>, Vec<&Effect>) = effects.iter().partition(|e| e.name.starts_with("sensor-"));
+        let (faults, physics): (Vec<&Effect>, Vec<&Effect>) =
+            effects.iter().partition(|e| e.name.starts_with("sensor-"));
         scenario.effects.extend(physics.into_iter().cloned());
         let mission = scenario::build(&scenario)?;
         let late = scenario.effects.iter().filter(|e| e.name == "actuator-delay");

@@ -49,7 +49,8 @@ struct Probe {
 pub fn screen(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -> Result<Vec<Score>, DiagnoseError> {
     let every = fit.segments.len().div_ceil(SEGMENTS).max(1);
     let whole = fit.segments.len();
-    let thinned = Fit { segments: fit.segments.iter().skip(every / 2).step_by(every).cloned().collect(), ..fit.clone() };
+    let thinned =
+        Fit { segments: fit.segments.iter().skip(every / 2).step_by(every).cloned().collect(), ..fit.clone() };
     let share = thinned.segments.len() as f64 / whole.max(1) as f64;
     let mut scores = screen_all(stage, plant, &thinned, all)?;
     scores.iter_mut().for_each(|s| s.score /= share);

@@ -49,12 +49,24 @@ pub fn run(scenario: Scenario, set: &RecordingSet) -> Result<(), DiagnoseError> 
     let nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort { iterations: 6, share: 1e-4 })?;
     show("nominal", &nominal, t0);
     let w = window.unwrap_or(tapes[0].span.1);
-    let located = crate::locate::locate(&stage, &plant, &nominal, crate::locate::places(&Facts::new(&nominal.built, &tapes), w))?;
+    let located =
+        crate::locate::locate(&stage, &plant, &nominal, crate::locate::places(&Facts::new(&nominal.built, &tapes), w))?;
     for p in located.ranked() {
-        println!("  located {:30} S {:12.1} rank {} share {:.3}", located.places[p].name, located.score(p), located.rank(p), located.share(p));
+        println!(
+            "  located {:30} S {:12.1} rank {} share {:.3}",
+            located.places[p].name,
+            located.score(p),
+            located.rank(p),
+            located.share(p)
+        );
     }
     println!("{:.1} s", t0.elapsed().as_secs_f64());
-    let keep: Vec<String> = located.ranked().into_iter().filter(|p| located.share(*p) > 0.2 * located.share(located.ranked()[0])).map(|p| located.places[p].name.clone()).collect();
+    let keep: Vec<String> = located
+        .ranked()
+        .into_iter()
+        .filter(|p| located.share(*p) > 0.2 * located.share(located.ranked()[0]))
+        .map(|p| located.places[p].name.clone())
+        .collect();
     let facts = |f: &Fit| {
         let mut h = hypotheses(&Facts::new(&f.built, &tapes));
         h.retain(|h| !h.place.starts_with("joint:") || keep.contains(&h.place));
