@@ -52,11 +52,11 @@ impl Appendage {
     }
 
     /// Of motion and of the spring, J. A mode without coupling has none: it is nobody's.
-    pub fn calc_energy(&self, memory: &[f64]) -> [f64; 2] {
+    pub fn calc_energy(&self, memory: &[f64]) -> f64 {
         if self.coupling == Vec3::zeros() {
-            return [0.0; 2];
+            return 0.0;
         }
-        [0.5 * memory[1] * memory[1], 0.5 * (self.rate * memory[0]).powi(2)]
+        0.5 * memory[1] * memory[1] + 0.5 * (self.rate * memory[0]).powi(2)
     }
 
     /// The memory as seen from the body: η and η̇.

@@ -9,11 +9,12 @@
 //!
 //! A part's memory is absolute, so that its rate never needs the body's acceleration: no algebraic loop, and at neutral
 //! parameters no bit of the body's motion changes. What one wants to say or to estimate is relative: deflections and
-//! rates as seen from the body, all zero where body and part move as one. [`BodyLaw::slots`] names those coordinates.
+//! rates as seen from the body, all zero where body and part move as one. [`BodyLaw::memory_names`] lists those coordinates.
 
 mod appendage;
 mod load;
 mod motion;
+mod part;
 mod slosh;
 mod sphere;
 
@@ -23,7 +24,35 @@ pub use motion::{Axes, BodyMotion, BodyPlace};
 pub use slosh::Slosh;
 pub use sphere::Sphere;
 
-use spatial::{Frame, Vec3, Wrench};
+pub(crate) use part::{
+    Parts, add_impulses, advance, calc_carried, calc_carried_linear, calc_energy, calc_motion, drift_to_midpoint, eval,
+    find_place, of_bodies, rest,
+};
+
+use spatial::{Frame, Inertia, Mat3, Vec3, Wrench};
+
+/// An effect on one body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyEffect {
+    /// The link, and what must be known of its body.
+    pub(crate) place: BodyPlace,
+    /// What it does.
+    pub law: BodyLaw,
+}
+
+impl BodyEffect {
+    /// At a link of a vehicle. The vehicle's tree is without what the effect's part takes with it
+    /// ([`multibody::Inertial::without_point`] and its like); centre of mass and tensor of the whole are worked out when
+    /// the model is built.
+    pub fn new(vehicle: usize, link: usize, law: BodyLaw) -> Self {
+        Self { place: BodyPlace { vehicle, link, com: Vec3::zeros(), tensor_com: Mat3::zeros() }, law }
+    }
+
+    /// Where it acts.
+    pub fn place(&self) -> &BodyPlace {
+        &self.place
+    }
+}
 
 /// What an effect does to its body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,30 +80,30 @@ pub struct BodyAction {
     pub loss: f64,
 }
 
-/// Name and usual size of one relative coordinate of a part: u.x, m, for example.
-pub type SlotName = (&'static str, f64);
-
-/// Deflections of centimetres and the rates that belong to them at 0.1 Hz.
-const SLOSH_SLOTS: [SlotName; 6] =
-    [("u.x", 1e-2), ("u.y", 1e-2), ("u.z", 1e-2), ("u_rate.x", 1e-2), ("u_rate.y", 1e-2), ("u_rate.z", 1e-2)];
-/// Of η in √kg·m and its rate.
-const APPENDAGE_SLOTS: [SlotName; 2] = [("eta", 1e-2), ("eta_rate", 1e-2)];
-/// rad/s.
-const SPHERE_SLOTS: [SlotName; 3] = [("omega.x", 1e-3), ("omega.y", 1e-3), ("omega.z", 1e-3)];
-
 impl BodyLaw {
-    /// Length of the memory.
-    pub fn memory_len(&self) -> usize {
-        self.slots().len()
+    /// Whether something moves inside the body, with momentum and memory of its own.
+    pub fn has_part(&self) -> bool {
+        !matches!(self, Self::Load(_))
     }
 
-    /// The relative coordinates of the part, in order; as many as the memory has.
-    pub fn slots(&self) -> &'static [SlotName] {
+    /// The relative coordinates of the part, in order: deflection (m) and its rate, η (√kg·m) and its rate, angular
+    /// velocity (rad/s). The memory has as many numbers.
+    pub fn memory_names(&self) -> &'static [&'static str] {
         match self {
             Self::Load(_) => &[],
-            Self::Slosh(_) => &SLOSH_SLOTS,
-            Self::Appendage(_) => &APPENDAGE_SLOTS,
-            Self::Sphere(_) => &SPHERE_SLOTS,
+            Self::Slosh(_) => &["u.x", "u.y", "u.z", "u_rate.x", "u_rate.y", "u_rate.z"],
+            Self::Appendage(_) => &["eta", "eta_rate"],
+            Self::Sphere(_) => &["omega.x", "omega.y", "omega.z"],
+        }
+    }
+
+    /// Usual sizes of those coordinates: centimetres, and milliradians per second.
+    pub fn memory_scales(&self) -> &'static [f64] {
+        match self {
+            Self::Load(_) => &[],
+            Self::Slosh(_) => &[1e-2; 6],
+            Self::Appendage(_) => &[1e-2; 2],
+            Self::Sphere(_) => &[1e-3; 3],
         }
     }
 
@@ -83,6 +112,25 @@ impl BodyLaw {
         match self {
             Self::Slosh(slosh) => Some((slosh.mass, vector_at(memory, 0), vector_at(memory, 3))),
             _ => None,
+        }
+    }
+
+    /// What the part adds to its link when it is locked at rest, about the link's origin, link axes.
+    fn calc_locked(&self) -> Inertia {
+        match self {
+            Self::Load(_) => Inertia::default(),
+            Self::Slosh(slosh) => Inertia::from_com(slosh.mass, &slosh.rest, &Mat3::zeros()),
+            Self::Appendage(m) => Inertia { rot: m.coupling * m.coupling.transpose(), ..Inertia::default() },
+            Self::Sphere(s) => Inertia { rot: Mat3::from_diagonal_element(s.inertia), ..Inertia::default() },
+        }
+    }
+
+    /// First of the memory's velocities and momenta; what stands before are places.
+    fn first_kick(&self) -> usize {
+        match self {
+            Self::Load(_) | Self::Sphere(_) => 0,
+            Self::Slosh(_) => 3,
+            Self::Appendage(_) => 1,
         }
     }
 
@@ -118,17 +166,17 @@ impl BodyLaw {
         }
     }
 
-    /// Energy of the part, J: of its motion, and stored in its spring.
-    pub fn calc_energy(&self, frame_wl: &Frame, memory: &[f64]) -> [f64; 2] {
+    /// Energy of the part, J: of its motion, and in its spring.
+    pub fn calc_energy(&self, frame_wl: &Frame, memory: &[f64]) -> f64 {
         match self {
-            Self::Load(_) => [0.0; 2],
+            Self::Load(_) => 0.0,
             Self::Slosh(slosh) => slosh.calc_energy(frame_wl, memory),
             Self::Appendage(mode) => mode.calc_energy(memory),
             Self::Sphere(sphere) => sphere.calc_energy(memory),
         }
     }
 
-    /// The memory in the coordinates of [`BodyLaw::slots`].
+    /// The memory in the coordinates of [`BodyLaw::memory_names`].
     pub fn calc_relative(&self, motion: &BodyMotion, memory: &[f64], relative: &mut [f64]) {
         match self {
             Self::Load(_) => {}
@@ -138,7 +186,7 @@ impl BodyLaw {
         }
     }
 
-    /// The memory that has the given coordinates of [`BodyLaw::slots`]; zeros: at rest with the body.
+    /// The memory that has the given relative coordinates; zeros: at rest with the body.
     pub fn calc_memory(&self, motion: &BodyMotion, relative: &[f64], memory: &mut [f64]) {
         match self {
             Self::Load(_) => {}

@@ -53,10 +53,10 @@ impl Slosh {
     }
 
     /// Of motion and of the spring, J.
-    pub fn calc_energy(&self, frame_wl: &Frame, memory: &[f64]) -> [f64; 2] {
+    pub fn calc_energy(&self, frame_wl: &Frame, memory: &[f64]) -> f64 {
         let u = vector_at(memory, 0) - frame_wl.point(&self.rest);
         let kinetic = 0.5 * self.mass * vector_at(memory, 3).norm_squared();
-        [kinetic, 0.5 * self.mass * self.rate * self.rate * u.norm_squared()]
+        kinetic + 0.5 * self.mass * self.rate * self.rate * u.norm_squared()
     }
 
     /// The memory as seen from the body: Rᵀu and its rate.

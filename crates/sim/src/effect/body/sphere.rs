@@ -39,9 +39,9 @@ impl Sphere {
         Wrench::new(self.inertia * vector_at(memory, 0), Vec3::zeros())
     }
 
-    /// Of motion, and nothing stored, J.
-    pub fn calc_energy(&self, memory: &[f64]) -> [f64; 2] {
-        [0.5 * self.inertia * vector_at(memory, 0).norm_squared(), 0.0]
+    /// Of motion, J; nothing is stored.
+    pub fn calc_energy(&self, memory: &[f64]) -> f64 {
+        0.5 * self.inertia * vector_at(memory, 0).norm_squared()
     }
 
     /// The memory as seen from the body: ω_s − ω, axes of the link.
