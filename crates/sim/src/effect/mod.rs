@@ -131,6 +131,7 @@ impl Effects {
                 let place = body::find_place(model, &self.list, &effect.place);
                 let place = place.ok_or_else(|| refuse("names no vehicle or link"))?;
                 let law = effect.law;
+                law.find_fault(model.step).map_or(Ok(()), |fault| Err(refuse(&fault)))?;
                 self.list[index].kind = EffectKind::Body(BodyEffect { place, law });
             }
             EffectKind::Tilt(tilt) => self.tilt += tilt,

@@ -115,6 +115,19 @@ impl BodyLaw {
         }
     }
 
+    /// What keeps it from being simulated in steps of `step` s: a part must not turn by more than a radian in one.
+    pub(crate) fn find_fault(&self, step: f64) -> Option<String> {
+        let (what, rate) = match self {
+            Self::Load(_) => return None,
+            Self::Slosh(s) => ("frequency", s.rate * (2.0 * s.damping).max(1.0)),
+            Self::Appendage(m) => ("frequency", m.rate * (2.0 * m.damping).max(1.0)),
+            Self::Sphere(s) if s.inertia == 0.0 => return None,
+            Self::Sphere(s) => ("c/i_damper", s.c / s.inertia),
+        };
+        let too_fast = rate.is_nan() || rate * step > 1.0;
+        too_fast.then(|| format!("moves at {rate:.3e} rad/s ({what}), too fast for a step of {step} s; shorten the step"))
+    }
+
     /// What the part adds to its link when it is locked at rest, about the link's origin, link axes.
     fn calc_locked(&self) -> Inertia {
         match self {
