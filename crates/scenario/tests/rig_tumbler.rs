@@ -102,7 +102,7 @@ fn fit_memory(effects: &str, start: &[f64], rows: &[Row]) -> Vec<f64> {
     let of = |start: &[f64]| calc_residuals(rows, &simulate(effects, start, 0.02)).concat();
     let mut all = start.to_vec();
     all.resize(7 + slots.len(), 0.0);
-    for _ in 0..if slots.is_empty() { 0 } else { 4 } {
+    for _ in 0..if slots.is_empty() { 0 } else { 3 } {
         let base = nalgebra::DVector::from_vec(of(&all));
         let columns: Vec<_> = slots
             .iter()
@@ -146,13 +146,17 @@ fn the_true_model_predicts_every_practice_run_to_the_noise() {
             let start = fit_memory(&effects, &start, &rows);
             let samples = simulate(&effects, &start, 0.02);
             let [attitude, gyro] = calc_rms(&rows, &samples);
-            println!("tumbler-0{set} {file}: attitude {attitude:.4}, gyro {gyro:.4} of the noise; memory {:.5?}", &start[7..]);
+            println!(
+                "tumbler-0{set} {file}: attitude {attitude:.4}, gyro {gyro:.4} of the noise; memory {:.5?}",
+                &start[7..]
+            );
             // 9,000 and 45,000 samples: four standard deviations of the RMS.
             assert!((attitude - 1.0).abs() < 0.03 && (gyro - 1.0).abs() < 0.0135);
             let holdout = key["oracle"]["holdout"].as_array().unwrap().iter().find(|h| h["run"] == file);
             if let Some(truth) = holdout.map(|h| &h["true"]) {
                 // The key's figures have three decimals; its true model and ours differ by less.
-                let off = [(attitude, &truth["attitude"]), (gyro, &truth["gyro"])].map(|(a, b)| a - b.as_f64().unwrap());
+                let off =
+                    [(attitude, &truth["attitude"]), (gyro, &truth["gyro"])].map(|(a, b)| a - b.as_f64().unwrap());
                 assert!(off.iter().all(|x| x.abs() < 1.5e-3), "key: {truth}");
             }
         }
@@ -201,10 +205,12 @@ frequency = 0.4
 #[test]
 fn the_rigs_step_is_fine_enough_whatever_the_effects() {
     // 7 deg/s about every kind of axis: the middle one, where a tumble is least forgiving, the smallest and the largest.
-    for (what, start) in [("middle", [0.01, 0.122, 0.01]), ("smallest", [0.12, 0.02, 0.01]), ("largest", [0.02, 0.01, 0.12])] {
+    for (what, start) in
+        [("middle", [0.01, 0.122, 0.01]), ("smallest", [0.12, 0.02, 0.01]), ("largest", [0.02, 0.01, 0.12])]
+    {
         let start: Vec<f64> = [1.0, 0.0, 0.0, 0.0].into_iter().chain(start).collect();
         for effects in ["", EVERYTHING] {
-            let reference = simulate(effects, &start, 2.5e-3);
+            let reference = simulate(effects, &start, 5e-3);
             let gap = |step: f64| calc_gap(&simulate(effects, &start, step), &reference);
             let [q, w] = gap(0.02);
             let all = if effects.is_empty() { "nominal" } else { "with all effects" };
@@ -256,7 +262,7 @@ vector = [0.0, 0.0, 0.0]
         let spin = world.kinematics(0).vel[0].ang;
         world.set_base_twists(&[Twist::new(spin, Vec3::new(0.1, 0.2, 0.3))]);
         (0..500).for_each(|_| world.advance().unwrap());
-        (world.state().bases[0], world.state().momentum[0])
+        format!("{:?}", (world.state().bases[0], world.state().momentum[0], world.kinematics(0).vel[0]))
     };
     let nominal = end("");
     assert_eq!(end(neutral), nominal);
@@ -297,7 +303,10 @@ fn what_a_body_cannot_give_is_refused_with_a_way_out() {
     };
     for (effect, fragment) in [
         ("name = \"slosh\"\nmass = 450.0\nfrequency = 0.1\n", "takes more than the link has"),
-        ("name = \"flexible-appendage\"\nfrequency = 0.1\ncoupling = [10.0, 0.0, 0.0]\n", "takes more than the link has"),
+        (
+            "name = \"flexible-appendage\"\nfrequency = 0.1\ncoupling = [10.0, 0.0, 0.0]\n",
+            "takes more than the link has",
+        ),
         ("name = \"internal-dissipation\"\ni_damper = 95.0\nc = 1.0\n", "takes more than the link has"),
         ("name = \"internal-dissipation\"\ni_damper = 1e-3\nc = 1.0\n", "shorten the step"),
         ("name = \"slosh\"\nmass = 4.0\nfrequency = 20.0\n", "shorten the step"),

@@ -118,8 +118,7 @@ impl Workspace {
         for (i, vehicle) in model.vehicles.iter().enumerate() {
             let kin = &mut self.kin[i];
             kin.update_velocities(&vehicle.tree, &Twist::default(), &state.v[vehicle.v_range()]);
-            let carried =
-                if self.parts.has_parts { calc_carried(model, state, i, kin) } else { Wrench::default() };
+            let carried = if self.parts.has_parts { calc_carried(model, state, i, kin) } else { Wrench::default() };
             let base = calc_base_twist(vehicle, kin, &state.momentum[i], &carried);
             for twist in &mut kin.vel {
                 *twist += base;

@@ -60,8 +60,16 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
     let (shapes, pairs) = shapes::resolve(scenario, &robots, &specs, &mut faults);
     let mechanisms = mechanisms::resolve(scenario, &specs, &mut faults);
     let environment = environment(&scenario.environment);
-    let mut parts =
-        effects::Parts { vehicles: specs, nominal_coms, table, shapes, pairs, mechanisms, environment, effects: Vec::new() };
+    let mut parts = effects::Parts {
+        vehicles: specs,
+        nominal_coms,
+        table,
+        shapes,
+        pairs,
+        mechanisms,
+        environment,
+        effects: Vec::new(),
+    };
     effects::apply(&plan, &mut parts, &mut faults);
     refuse_what_is_not_simulated(scenario, &mut faults);
     if !faults.is_empty() {

@@ -21,17 +21,15 @@ mod line;
 mod memory;
 mod series;
 
-pub use body::{
-    Appendage, Axes, BodyAction, BodyEffect, BodyLaw, BodyMotion, BodyPlace, Load, Slosh, Sphere,
-};
+pub use body::{Appendage, Axes, BodyAction, BodyEffect, BodyLaw, BodyMotion, BodyPlace, Load, Slosh, Sphere};
 pub use joint::{DryLevel, JointEffect, JointLaw};
 pub use line::{LineEffect, LineLaw};
 pub use memory::{MemorySlot, memory_layout};
 pub use series::Series;
 
 pub(crate) use body::{Parts, add_impulses, calc_carried, calc_carried_linear, drift_to_midpoint};
-pub(crate) use memory::{calc_relative, is_blank, rest_parts, set_relative};
 pub(crate) use line::{Lines, accept, next_switch};
+pub(crate) use memory::{calc_relative, is_blank, rest_parts, set_relative};
 
 use crate::actuator::{Coordinate, CoordinatePoint};
 use crate::error::ModelError;
@@ -269,9 +267,7 @@ pub(crate) fn calc_energy(model: &Model, state: &State, kin: &[Kinematics]) -> f
             series.calc_energy(&state.effects[model.effects.memory(index)], state.v[series.coordinate])
         }
         EffectKind::Line(_) | EffectKind::Tilt(_) => 0.0,
-        EffectKind::Body(effect) => {
-            body::calc_energy(model, state, (index, effect), &kin[effect.place.vehicle])
-        }
+        EffectKind::Body(effect) => body::calc_energy(model, state, (index, effect), &kin[effect.place.vehicle]),
     };
     model.effects.list.iter().enumerate().map(of).sum()
 }

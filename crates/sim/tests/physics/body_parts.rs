@@ -2,12 +2,10 @@
 //! closed form, neutral parts.
 
 use crate::body_loads::effect;
-use crate::support::{ALL, Setup, link, robot, run, spec, twist, world};
+use crate::support::{ALL, Setup, arm7, link, robot, run, spec, twist, world};
 use multibody::{Inertial, LinkDescription, Tree};
-use sim::{
-    Appendage, Base, BodyLaw, Energy, Integrator, Load, ModelSpec, MomentumAudit, Slosh, Sphere, World,
-};
-use spatial::{Mat3, Vec3};
+use sim::{Appendage, Base, BodyLaw, Energy, Integrator, Load, ModelSpec, MomentumAudit, Slosh, Sphere, World};
+use spatial::{Inertia, Mat3, Vec3};
 use std::f64::consts::TAU;
 
 /// A body of 45 kg with products of inertia and its centre of mass off the origin.
@@ -51,11 +49,7 @@ fn mode(size: f64, frequency: f64, damping: f64) -> BodyLaw {
 }
 
 fn all_parts(size: f64) -> [BodyLaw; 3] {
-    [
-        slosh(4.0 * size, 0.4, 0.02),
-        mode(2.0 * size, 0.6, 0.01),
-        BodyLaw::Sphere(Sphere { inertia: 1.5 * size, c: 0.4 }),
-    ]
+    [slosh(4.0 * size, 0.4, 0.02), mode(2.0 * size, 0.6, 0.01), BodyLaw::Sphere(Sphere { inertia: 1.5 * size, c: 0.4 })]
 }
 
 /// Deflects every part and lets it move.
@@ -186,8 +180,10 @@ fn a_flexible_mode_rings_faster_on_a_free_body() {
         let body = link("body", 45.0, Vec3::zeros(), Vec3::new(10.0, 12.0, 20.0));
         let law = BodyLaw::Appendage(Appendage { rate: TAU * 0.5, damping: 0.0, coupling: 2.0 * Vec3::z() });
         let effects = vec![effect(law)];
-        let mut world =
-            world(ModelSpec { effects, ..spec(vec![(tree(without(body, &law)), Base::Free)], &Setup::new(integrator)) });
+        let mut world = world(ModelSpec {
+            effects,
+            ..spec(vec![(tree(without(body, &law)), Base::Free)], &Setup::new(integrator))
+        });
         world.set_base_twists(&[twist([0.0; 3], [0.0; 3])]);
         world.set_effect_memory(&[0.01, 0.0]);
         let (f, expected) = (calc_frequency(&mut world, 0, 20.0), 0.5 / (1.0_f64 - 4.0 / 20.0).sqrt());
@@ -217,7 +213,11 @@ fn a_damper_turns_any_tumble_into_a_spin_about_the_largest_axis() {
     let tilt = axis.cross(&momentum.normalize()).norm();
     // At rest in the spin about the largest axis: E = L²/(2 I₃).
     let floor = momentum.norm_squared() / (2.0 * 22.0);
-    println!("after {} s: axis {tilt:.1e} rad from L, energy {:.2e} above its floor", world.state().time, energy / floor - 1.0);
+    println!(
+        "after {} s: axis {tilt:.1e} rad from L, energy {:.2e} above its floor",
+        world.state().time,
+        energy / floor - 1.0
+    );
     assert!(tilt < 1e-3 && (energy / floor - 1.0).abs() < 1e-6);
     assert_eq!(world.state().momentum[0].moment, momentum);
 }
@@ -254,6 +254,85 @@ fn a_falling_tank_does_not_slosh() {
     assert!(audit.linear_drift < 1e-12);
 }
 
+/// The seven-joint arm with a tank and a damper in its third link and a mode on its base.
+fn arm_with_parts(integrator: Integrator, base: Base) -> World {
+    let slosh = BodyLaw::Slosh(Slosh { mass: 0.5, rate: 4.0, damping: 0.05, rest: Vec3::new(0.05, 0.02, 0.1) });
+    let sphere = BodyLaw::Sphere(Sphere { inertia: 0.005, c: 0.002 });
+    let mode = BodyLaw::Appendage(Appendage { rate: 3.0, damping: 0.02, coupling: Vec3::new(0.3, 0.5, 0.2) });
+    let at = |link: usize, law: BodyLaw| sim::Effect {
+        name: format!("{law:?}"),
+        kind: sim::EffectKind::Body(sim::BodyEffect::new(0, link, law)),
+    };
+    let effects = vec![at(3, slosh), at(3, sphere), at(0, mode)];
+    let mut tree = arm7();
+    for effect in &effects {
+        let sim::EffectKind::Body(body) = &effect.kind else { continue };
+        let inertia = &mut tree.bodies[body.place().link].inertia;
+        let own = Inertial { mass: inertia.mass, com: inertia.com(), tensor_com: inertia.tensor_com() };
+        let left = match &body.law {
+            BodyLaw::Slosh(s) => own.without_point(s.mass, &s.rest),
+            BodyLaw::Appendage(m) => own.without_mode(&m.coupling),
+            BodyLaw::Sphere(s) => own.without_sphere(s.inertia),
+            BodyLaw::Load(_) => Ok(own),
+        }
+        .unwrap();
+        *inertia = Inertia::from_com(left.mass, &left.com, &left.tensor_com);
+        tree.links[body.place().link].inertia = *inertia;
+    }
+    let mut world = world(ModelSpec { effects, ..spec(vec![(tree, base)], &Setup::new(integrator)) });
+    for k in 0..7 {
+        world.state_mut().v[k] = 0.4 - 0.1 * k as f64;
+        world.state_mut().q[k] = 0.2 * k as f64 - 0.5;
+    }
+    world.set_base_twists(&[twist([0.02, -0.05, 0.03], [0.01, 0.02, 0.0])]);
+    disturb(&mut world);
+    world
+}
+
+#[test]
+fn parts_in_the_links_of_an_arm_keep_the_books() {
+    let total = |w: &World| {
+        let energy = Energy::of(w);
+        energy.kinetic + energy.effect + w.state().account.effect_loss
+    };
+    for (integrator, bound) in ALL.into_iter().zip([3e-3, 5e-6, 3e-3, 1e-11]) {
+        let mut world = arm_with_parts(integrator, Base::Free);
+        let (mut audit, start) = (MomentumAudit::new(&world), total(&world));
+        run(&mut world, 4000);
+        audit.update(&world);
+        let (drift, energy) = (audit.linear_drift.max(audit.angular_drift), total(&world) / start - 1.0);
+        println!("{integrator:?}: momentum {drift:.1e}, energy balance {energy:.1e}");
+        assert!(drift < 1e-12 && energy.abs() < bound);
+        assert!(world.state().account.effect_loss > 1e-3 * start);
+    }
+}
+
+#[test]
+fn parts_in_guided_and_held_vehicles_keep_the_balance_of_energy() {
+    let total = |w: &World| {
+        let energy = Energy::of(w);
+        energy.kinetic + energy.effect + w.state().account.effect_loss
+    };
+    for base in [Base::Fixed, Base::Only([false, false, true, true, true, false])] {
+        let mut world = arm_with_parts(Integrator::RungeKutta4, base);
+        let start = total(&world);
+        run(&mut world, 4000);
+        let energy = total(&world) / start - 1.0;
+        println!("{base:?}: energy balance {energy:.1e}");
+        assert!(energy.abs() < 1e-11);
+    }
+}
+
+#[test]
+fn a_step_with_parts_allocates_nothing() {
+    for integrator in ALL {
+        let mut world = arm_with_parts(integrator, Base::Free);
+        run(&mut world, 10);
+        let info = allocation_counter::measure(|| run(&mut world, 50));
+        assert_eq!(info.count_total, 0, "{integrator:?}");
+    }
+}
+
 #[test]
 fn neutral_parts_change_no_bit_and_beside_neutral_they_do() {
     let end = |laws: &[BodyLaw], integrator| {
@@ -262,7 +341,8 @@ fn neutral_parts_change_no_bit_and_beside_neutral_they_do() {
             disturb(&mut world);
         }
         run(&mut world, 200);
-        (world.state().bases[0], world.kinematics(0).vel[0], world.state().momentum[0])
+        // As text: a zero with the other sign is another bit.
+        format!("{:?}", (world.state().bases[0], world.kinematics(0).vel[0], world.state().momentum[0]))
     };
     for integrator in ALL {
         let nominal = end(&[], integrator);

@@ -17,7 +17,8 @@ pub(in crate::build) type NominalComs = Vec<Vec<Vec3>>;
 
 /// The centres of mass of all links; zero for a link without mass.
 pub(in crate::build) fn nominal_coms(robots: &[RobotDescription]) -> NominalComs {
-    let of = |robot: &RobotDescription| robot.links.iter().map(|l| l.inertial.map_or(Vec3::zeros(), |i| i.com)).collect();
+    let of =
+        |robot: &RobotDescription| robot.links.iter().map(|l| l.inertial.map_or(Vec3::zeros(), |i| i.com)).collect();
     robots.iter().map(of).collect()
 }
 

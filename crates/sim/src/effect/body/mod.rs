@@ -125,7 +125,8 @@ impl BodyLaw {
             Self::Sphere(s) => ("c/i_damper", s.c / s.inertia),
         };
         let too_fast = rate.is_nan() || rate * step > 1.0;
-        too_fast.then(|| format!("moves at {rate:.3e} rad/s ({what}), too fast for a step of {step} s; shorten the step"))
+        too_fast
+            .then(|| format!("moves at {rate:.3e} rad/s ({what}), too fast for a step of {step} s; shorten the step"))
     }
 
     /// What the part adds to its link when it is locked at rest, about the link's origin, link axes.
