@@ -119,7 +119,7 @@ fn names_that_do_not_exist_are_told_with_line_and_nearest_spelling() {
         ("[[actuator]]\nname = \"a\"\nkind = \"joint-torque\"\njoint = \"servicer/wrist_rol\"\n", "wrist_roll"),
         ("[[contact]]\nbetween = [\"servicer/pad_lft\", \"servicer/palm\"]\n", "pad_left"),
         ("[[shape]]\nname = \"s\"\non = \"servicer/buss\"\nkind = \"sphere\"\nradius_m = 0.1\n", "bus"),
-        ("[[effect]]\nname = \"payload\"\nplace = \"link:servicer/palm\"\nmass = 1.0\n", "not simulated"),
+        ("[[effect]]\nname = \"payloat\"\nplace = \"link:servicer/palm\"\nmass = 1.0\n", "did you mean \"payload\""),
         ("[vehicle.end_effector_pose]\nframe = \"grasp_frame\"\nposition_m = [9.0, 0.0, 0.0]\n", "cannot reach"),
     ];
     for (tail, expected) in cases {

@@ -258,7 +258,7 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
         must_factor = !converged;
         if first_midpoint_pass {
             recalc_bias_at_midpoint(model, state, ws);
-            must_factor |= !ws.touches.is_empty() || !ws.couplings.is_empty();
+            must_factor |= !ws.touches.is_empty() || !ws.couplings.is_empty() || !model.effects.list.is_empty();
         }
         if converged && !first_midpoint_pass {
             break;
