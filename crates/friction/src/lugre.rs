@@ -71,6 +71,7 @@ impl LuGre {
             kinetic: self.mu_kinetic,
             stribeck_speed: self.stribeck_speed,
             dwell_time: 0.0,
+            fall_time: 0.0,
         }
     }
 
@@ -134,6 +135,7 @@ impl LuGre {
             force: -(self.stiffness * z + self.damping * s_rate + self.viscous * u),
             s: z,
             s_rate,
+            rest_rate: 0.0,
             sticks: false,
         }
     }
