@@ -98,7 +98,7 @@ impl Bristle {
     }
 
     #[inline]
-    fn ellipse(&self, level: f64, normal_force: f64, grain: &Vector3<f64>) -> Ellipse {
+    pub(crate) fn ellipse(&self, level: f64, normal_force: f64, grain: &Vector3<f64>) -> Ellipse {
         let along = level * normal_force / self.stiffness;
         Ellipse { along, across: along * self.across, grain: *grain, way: self.way }
     }
@@ -170,8 +170,8 @@ impl Bristle {
         Slope { across: self.viscous, along: self.viscous + fall, direction }
     }
 
-    /// The law in continuous time; `trial.s_trial` and `trial.elapsed` do not matter, a rest without a rate of its own stays
-    /// what it was.
+    /// The law in continuous time; `trial.s_trial` and `trial.elapsed` do not matter, rest stays what it was: [`Self::flow`]
+    /// moves both.
     pub fn eval_rate(&self, trial: &Trial) -> BrushRate {
         if trial.normal_force <= 0.0 {
             return BrushRate::none();
@@ -193,8 +193,7 @@ impl Bristle {
                 force = self.without_push(force, &s, &trial.slip, self.stiffness * s.dot(&s_rate));
             }
         }
-        let rest_rate = if levels.has_rate() { levels.calc_rest_rate(trial.rest, speed) } else { 0.0 };
-        BrushRate { force: force - self.viscous * trial.slip, s, s_rate, rest_rate, sticks: !slides }
+        BrushRate { force: force - self.viscous * trial.slip, s, s_rate, sticks: !slides }
     }
 }
 

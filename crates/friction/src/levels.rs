@@ -11,7 +11,7 @@
 //!
 //! The dwell time makes the breakaway force grow with the time at rest, and fall with the rate of loading (after Gonthier,
 //! McPhee, Lange and Piedbœuf 2004, whose contact model lags the Stribeck exponential by a slow time constant where it
-//! rises and a short one where it falls). With a fall time too, w is a state with a rate. A new contact starts rested where T = 0, else with w = 0.
+//! rises and a short one where it falls). A new contact starts rested where T = 0, else with w = 0.
 
 /// How the level moves between static and kinetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,19 +65,6 @@ impl Levels {
     #[inline]
     fn time_towards(&self, target: f64, rest: f64) -> f64 {
         if target > rest || self.dwell_time == 0.0 { self.dwell_time } else { self.fall_time }
-    }
-
-    /// Whether the rest has a rate at all times, and is integrated like a deflection.
-    #[inline]
-    pub fn has_rate(&self) -> bool {
-        self.dwell_time > 0.0 && self.fall_time > 0.0 && self.stribeck_speed > 0.0 && !self.is_constant()
-    }
-
-    /// ẇ at a slip speed (m/s), 1/s; only where [`Self::has_rate`].
-    #[inline]
-    pub fn calc_rest_rate(&self, rest: f64, speed: f64) -> f64 {
-        let target = self.stribeck(speed);
-        (target - rest) / self.time_towards(target, rest)
     }
 
     /// Rest at a slip speed (m/s) after `elapsed` s; with a drop, the rest to which the trial is held.

@@ -39,6 +39,7 @@
 mod bristle;
 mod coulomb;
 mod ellipse;
+mod flow;
 mod law;
 mod levels;
 mod lugre;
@@ -48,6 +49,7 @@ mod trial;
 
 pub use bristle::Bristle;
 pub use coulomb::RegularisedCoulomb;
+pub use flow::SlipPath;
 pub use law::Friction;
 pub use levels::Levels;
 pub use lugre::LuGre;

@@ -135,7 +135,6 @@ impl LuGre {
             force: -(self.stiffness * z + self.damping * s_rate + self.viscous * u),
             s: z,
             s_rate,
-            rest_rate: 0.0,
             sticks: false,
         }
     }

@@ -126,8 +126,6 @@ pub struct BrushRate {
     pub s: Vector3<f64>,
     /// Its rate, m/s: the slip velocity, less what the law takes away.
     pub s_rate: Vector3<f64>,
-    /// Rate of the rest, 1/s; zero where it is no state of its own (see [`crate::Levels`]).
-    pub rest_rate: f64,
     /// Whether it sticks.
     pub sticks: bool,
 }
@@ -135,6 +133,6 @@ pub struct BrushRate {
 impl BrushRate {
     pub(crate) fn none() -> Self {
         let zero = Vector3::zeros();
-        Self { force: zero, s: zero, s_rate: zero, rest_rate: 0.0, sticks: false }
+        Self { force: zero, s: zero, s_rate: zero, sticks: false }
     }
 }
