@@ -27,6 +27,8 @@
 mod account;
 mod actuator;
 mod contacts;
+mod dead_weight;
+mod drive;
 mod environment;
 mod error;
 mod mechanism;
@@ -43,6 +45,7 @@ mod world;
 
 pub use account::{Energy, MomentumAudit};
 pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
+pub use drive::{Drive, DriveAxis, DrivePath, Motion};
 pub use environment::Environment;
 pub use error::{ModelError, StepError};
 pub use mechanism::{

@@ -8,12 +8,13 @@
 
 use crate::actuator::CoordinatePoint;
 use crate::contacts::{Touch, Turned, find_memory, find_touches};
+use crate::drive;
 use crate::mechanism;
 use crate::model::Model;
 use crate::pivots;
 use crate::solve;
 use crate::state::{Account, ContactMemory, State};
-use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
+use crate::step::{add_impulses, begin, calc_bias, calc_end_time, calc_external, finish, moved_base};
 use crate::workspace::Workspace;
 use friction::{Friction, Trial, carry};
 use spatial::{Mat3, Twist, Vec3, Wrench, log_rotation, rotation_rate_of_vector};
@@ -102,6 +103,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     }
     let from = From { start: &rk.start, rate: &rk.sum, slots: &rk.slots };
     place(model, state, &mut ws.displacement, &from, h);
+    drive::place(model, state, calc_end_time(model, state));
     state.account.add_scaled(&rk.sum.account, h);
     ws.rk = rk;
     ws.update_positions(model, state);
@@ -174,6 +176,7 @@ fn place(model: &Model, state: &mut State, displacement: &mut [f64], from: &From
         vehicle.tree.retract(&mut state.q[vehicle.q_range()], xi);
     }
     state.v.iter_mut().zip(&rate.v).for_each(|(v, r)| *v += r * k);
+    drive::place(model, state, state.time);
     state.bristles.clear();
     let moved = slots.iter().zip(&rate.s).map(|(slot, r)| ContactMemory { s_w: slot.s_w + r * k, ..*slot });
     state.bristles.extend(moved);
@@ -188,6 +191,9 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     pivots::eval_explicit(model, ws, state.time - rk.start.time);
     eval_coordinates(model, state, ws, rk);
     calc_external(model, state, ws);
+    for drive in &model.drives {
+        ws.base_acceleration[drive.vehicle] = drive.calc_motion(state.time).acceleration;
+    }
     calc_bias(model, state, ws, false);
     if solve::factor(model, ws, 1.0) {
         solve::solve(model, ws, 1.0);
@@ -206,6 +212,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     add_impulses(model, state, ws, 1.0);
     std::mem::swap(&mut rk.rate.momentum, &mut state.momentum);
     (rk.rate.account, state.account) = (state.account, account);
+    drive::add_rates(model, state, ws, (&rk.rate.momentum, &mut rk.rate.account), &rk.rate.v);
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let (q, v) = (vehicle.q_range(), vehicle.v_range());
         let turned = log_rotation(&(state.bases[i].rotation * rk.start.bases[i].rotation.inverse()));

@@ -5,6 +5,7 @@
 mod actuators;
 mod beds;
 mod docking;
+mod drives;
 mod faults;
 mod kinematics;
 mod laws;
@@ -14,6 +15,7 @@ mod start;
 mod vehicles;
 
 pub(crate) use actuators::ActuatorTable;
+pub use drives::DriveChannel;
 pub use docking::docking_visuals;
 pub(crate) use faults::Faults;
 pub(crate) use kinematics::{calc_error, halves, solve_pose};
@@ -35,6 +37,8 @@ pub struct Mission {
     pub robots: Vec<RobotDescription>,
     /// The world at t = 0.
     pub world: World,
+    /// The driven coordinates, in the order of [`Model::with_drive_paths`].
+    pub drives: Vec<DriveChannel>,
     /// Guidance and control.
     pub controller: Box<dyn Controller + Send + Sync>,
     /// Steps of the whole run.
@@ -73,19 +77,20 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
         one_sided_force: Vec3::zeros(),
     };
     let model = match Model::build(spec) {
-        Ok(model) => Arc::new(model),
+        Ok(model) => drives::attach(scenario, model, &mut faults),
         Err(error) => {
             faults.add("", error.to_string());
             return Err(faults.into_errors());
         }
     };
-    finish(scenario, robots, &model, &table, faults)
+    let Some((model, drives)) = model else { return Err(faults.into_errors()) };
+    finish(scenario, robots, (&Arc::new(model), drives), &table, faults)
 }
 
 fn finish(
     scenario: &Scenario,
     robots: Vec<RobotDescription>,
-    model: &Arc<Model>,
+    (model, drives): (&Arc<Model>, Vec<DriveChannel>),
     table: &ActuatorTable,
     mut faults: Faults<'_>,
 ) -> Result<Mission, ScenarioErrors> {
@@ -96,6 +101,7 @@ fn finish(
             scenario: scenario.clone(),
             robots,
             world,
+            drives,
             controller,
             steps: (scenario.duration_s / scenario.integrator.step_s).round().max(1.0) as u64,
             steps_per_sample: samples(scenario),
@@ -114,9 +120,6 @@ fn refuse_what_is_not_simulated(scenario: &Scenario, faults: &mut Faults<'_>) {
         |what: &str| format!("{what} are read and checked, but not simulated in this version; remove the entry");
     if !scenario.effects.is_empty() {
         faults.add("effect[0]", later("effects"));
-    }
-    if !scenario.drives.is_empty() {
-        faults.add("drive[0]", later("prescribed motions"));
     }
     if !scenario.sensors.is_empty() {
         faults.add("sensor[0]", later("sensors"));

@@ -21,7 +21,7 @@ mod shape;
 mod strategy;
 mod vehicle;
 
-pub use actuator::{Actuator, ActuatorKind, Drive, DriveMotion, JointDrive};
+pub use actuator::{Actuator, ActuatorKind, Drive, DriveAxis, DriveMotion, JointDrive};
 pub use campaign::{Campaign, Disperse, Expect, Normal, Scalar, Uniform};
 pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw, Pivot};
 pub use effect::{Effect, ParamValue};
