@@ -94,6 +94,9 @@ pub struct Joint {
     pub damping: f64,
     /// Dry friction level, N·m or N.
     pub friction: f64,
+    /// Inertia that belongs to the coordinate and to no body, kg·m² or kg: a geared drive's rotor, reflected to the
+    /// joint, its gyroscopic terms neglected. It adds to the diagonal of the mass matrix and is no part of the momentum.
+    pub armature: f64,
 }
 
 /// Widths of a kind in `q` and in `v`.
@@ -161,6 +164,7 @@ impl Tree {
             velocity_limit: joint.velocity_limit,
             damping: joint.damping,
             friction: joint.friction,
+            armature: 0.0,
         });
         self.bodies.push(Body { parent: parent_body, inertia: Inertia::default() });
         self.bodies.len() - 1
@@ -209,6 +213,7 @@ impl Tree {
             velocity_limit: f64::INFINITY,
             damping: 0.0,
             friction: 0.0,
+            armature: 0.0,
         });
         self.nq += 1;
         self.nv += 1;

@@ -29,6 +29,7 @@ mod actuator;
 mod contacts;
 mod dead_weight;
 mod drive;
+mod effect;
 mod environment;
 mod error;
 mod mechanism;
@@ -46,6 +47,7 @@ mod world;
 pub use account::{Energy, MomentumAudit};
 pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
 pub use drive::{Drive, DriveAxis, DrivePath, Motion};
+pub use effect::{DryLevel, Effect, EffectKind, JointEffect, JointLaw, LineEffect, LineLaw, Series};
 pub use environment::Environment;
 pub use error::{ModelError, StepError};
 pub use mechanism::{
@@ -54,5 +56,5 @@ pub use mechanism::{
 };
 pub use model::{Base, Grain, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, Vehicle, VehicleSpec};
 pub use run::{Controller, Flow, NoControl, Observer};
-pub use state::{Account, ContactMemory, State, Work};
+pub use state::{Account, ContactMemory, Pending, State, Work};
 pub use world::{TouchReport, World};

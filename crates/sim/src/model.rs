@@ -4,6 +4,7 @@
 //! in W) the last. A `Model` never changes after [`Model::build`] and is shared by all threads.
 
 use crate::actuator::{Actuator, ActuatorKind, Coordinate};
+use crate::effect::{Effect, EffectKind, Effects, Series};
 use crate::environment::Environment;
 use crate::error::ModelError;
 use crate::mechanism::{Mechanism, MechanismKind};
@@ -169,6 +170,8 @@ pub struct ModelSpec {
     pub mechanisms: Vec<Mechanism>,
     /// Actuators in the order of the commands.
     pub actuators: Vec<Actuator>,
+    /// Physics beyond all that, in the order of their memory.
+    pub effects: Vec<Effect>,
     /// Gravity and tides.
     pub environment: Environment,
     /// How time advances.
@@ -207,6 +210,8 @@ pub struct Model {
     pub mechanisms: Vec<Mechanism>,
     /// Bases that follow a path.
     pub drives: Vec<crate::drive::Drive>,
+    /// Physics beyond all that.
+    pub(crate) effects: Effects,
     /// Global bodies and the frames in them, of the two sides of each mechanism.
     pub(crate) mechanism_sides: Vec<[(usize, Frame); 2]>,
     /// Pairs whose guide presses them together with a weight; nothing is detected for them.
@@ -245,14 +250,34 @@ impl Model {
             step: spec.step,
             mechanisms: spec.mechanisms,
             drives: Vec::new(),
+            effects: Effects::default(),
             mechanism_sides,
             dead_weights: Vec::new(),
             collider_radius,
             one_sided_force: spec.one_sided_force,
         };
         model.attach_drives()?;
+        model.effects = Effects::build(spec.effects, &mut model)?;
         crate::dead_weight::attach(&mut model)?;
         Ok(model)
+    }
+
+    /// The effects in their order.
+    pub fn effects(&self) -> &[Effect] {
+        &self.effects.list
+    }
+
+    /// Where the memory of an effect stands in [`crate::State::effects`].
+    pub fn effect_memory(&self, index: usize) -> std::ops::Range<usize> {
+        self.effects.memory(index)
+    }
+
+    /// The gear that an effect is.
+    pub(crate) fn series(&self, index: usize) -> Option<(usize, &Series)> {
+        match &self.effects.list[index].kind {
+            EffectKind::Series(series) => Some((index, series)),
+            _ => None,
+        }
     }
 
     fn attach_drives(&mut self) -> Result<(), ModelError> {

@@ -1,6 +1,6 @@
 //! The classical fourth-order Runge–Kutta step.
 //!
-//!   y = (base position, rotation vector from the step's start, joint displacement, v, p, L, s)
+//!   y = (base position, rotation vector from the step's start, joint displacement, v, p, L, s, effects' memory)
 //!
 //! Every stage takes the base twist from its momentum, so every stage conserves, and so does the sum. Rotation vectors
 //! follow θ̇ = ω − ½ θ×ω + 1/12 θ×(θ×ω). Bristles are integrated in the plane of the step's start; points that touch down within a step get
@@ -9,12 +9,13 @@
 use crate::actuator::CoordinatePoint;
 use crate::contacts::{Touch, Turned, find_memory, find_touches};
 use crate::drive;
+use crate::effect::{self, Acting};
 use crate::mechanism;
 use crate::model::Model;
 use crate::pivots;
 use crate::solve;
 use crate::state::{Account, ContactMemory, State};
-use crate::step::{add_impulses, begin, calc_bias, calc_end_time, calc_external, finish, moved_base};
+use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
 use crate::workspace::Workspace;
 use friction::{Friction, Trial, carry};
 use spatial::{Mat3, Twist, Vec3, Wrench, log_rotation, rotation_rate_of_vector};
@@ -38,6 +39,7 @@ struct Rates {
     momentum: Vec<Wrench>,
     /// Per bristle slot, in the plane and the axes of the step's start.
     s: Vec<Vec3>,
+    effects: Vec<f64>,
     account: Account,
 }
 
@@ -52,6 +54,7 @@ impl Rates {
         zero(&mut self.xi, model.nv());
         zero(&mut self.v, model.nv());
         zero(&mut self.s, slots);
+        zero(&mut self.effects, model.effects.n_memory());
         self.account = Account::default();
     }
 
@@ -64,6 +67,7 @@ impl Rates {
         add(&mut self.xi, &other.xi, k);
         add(&mut self.v, &other.v, k);
         add(&mut self.s, &other.s, k);
+        add(&mut self.effects, &other.effects, k);
         self.account.add_scaled(&other.account, k);
     }
 }
@@ -82,11 +86,12 @@ const STAGES: [(f64, f64); 4] = [(0.0, 1.0 / 6.0), (0.5, 1.0 / 3.0), (0.5, 1.0 /
 
 /// Advances the world by one step; `ws` holds the kinematics of `state`.
 pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
-    let h = model.step;
+    let h = ws.step;
     begin(model, state, ws);
     let mut rk = std::mem::take(&mut ws.rk);
     rk.start.copy_from(state);
     for (index, (node, weight)) in STAGES.into_iter().enumerate() {
+        ws.since = Some(node * h);
         if index > 0 {
             let from = From { start: &rk.start, rate: &rk.rate, slots: &rk.slots };
             place(model, state, &mut ws.displacement, &from, node * h);
@@ -103,7 +108,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     }
     let from = From { start: &rk.start, rate: &rk.sum, slots: &rk.slots };
     place(model, state, &mut ws.displacement, &from, h);
-    drive::place(model, state, calc_end_time(model, state));
+    drive::place(model, state, ws.end);
     state.account.add_scaled(&rk.sum.account, h);
     ws.rk = rk;
     ws.update_positions(model, state);
@@ -148,8 +153,8 @@ fn carry_to_the_end(model: &Model, state: &mut State, ws: &Workspace) {
         }
         if let (Some(touch), Some(Friction::Bristle(law))) = (touch, &model.laws[memory.pair as usize].friction) {
             let speed = (touch.u - touch.normal * touch.normal.dot(&touch.u)).norm();
-            let rest = law.levels().calc_rest(memory.rest, speed, model.step);
-            memory.rest = law.levels().settle(rest, touch.out.sticks, model.step);
+            let rest = law.levels().calc_rest(memory.rest, speed, ws.step);
+            memory.rest = law.levels().settle(rest, touch.out.sticks, ws.step);
         }
     }
 }
@@ -177,6 +182,7 @@ fn place(model: &Model, state: &mut State, displacement: &mut [f64], from: &From
     }
     state.v.iter_mut().zip(&rate.v).for_each(|(v, r)| *v += r * k);
     drive::place(model, state, state.time);
+    state.effects.iter_mut().zip(&rate.effects).for_each(|(x, r)| *x += r * k);
     state.bristles.clear();
     let moved = slots.iter().zip(&rate.s).map(|(slot, r)| ContactMemory { s_w: slot.s_w + r * k, ..*slot });
     state.bristles.extend(moved);
@@ -201,6 +207,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
         ws.v_gain.fill(f64::NAN);
     }
     rk.rate.v.copy_from_slice(&ws.v_gain);
+    effect::write_rates(model, state, ws, &mut rk.rate.effects);
     state.work.rate_evaluations += 1;
     state.work.solves += 1;
     ws.v_gain.fill(0.0);
@@ -256,9 +263,11 @@ fn eval_coordinates(model: &Model, state: &State, ws: &mut Workspace, rk: &Stage
             beta: 0.0,
             theta: 0.0,
             dry_start: rk.start.dry[i],
-            elapsed: model.step,
+            elapsed: ws.step,
+            from: ws.since.map(|since| (rk.start.v[i], since)),
         };
-        let force = coordinate.eval(&point, v, &model.actuators, &state.commands);
+        let force = coordinate.eval(&point, v, &Acting { model, state, step: ws.step, since: ws.since });
+        ws.coordinate_points[i] = point;
         ws.coordinate_forces[i] = force;
         ws.coordinate_lines[i] = (force.effort, 0.0);
     }

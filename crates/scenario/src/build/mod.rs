@@ -6,6 +6,7 @@ mod actuators;
 mod beds;
 mod docking;
 mod drives;
+mod effects;
 mod faults;
 mod kinematics;
 mod laws;
@@ -56,22 +57,28 @@ impl std::fmt::Debug for Mission {
 /// Builds the world and the plan of a scenario.
 pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
     let mut faults = Faults::new(scenario);
-    let Some(vehicles) = vehicles::load(scenario, &mut faults) else { return Err(faults.into_errors()) };
+    let plan = effects::check(scenario, &mut faults);
+    let Some(vehicles) = vehicles::load(scenario, &plan, &mut faults) else { return Err(faults.into_errors()) };
     let (robots, mut specs) = vehicles;
     let table = actuators::resolve(scenario, &mut specs, &mut faults);
     let (shapes, pairs) = shapes::resolve(scenario, &robots, &specs, &mut faults);
     let mechanisms = mechanisms::resolve(scenario, &specs, &mut faults);
+    let environment = environment(&scenario.environment);
+    let mut parts =
+        effects::Parts { vehicles: specs, table, shapes, pairs, mechanisms, environment, effects: Vec::new() };
+    effects::apply(&plan, &mut parts, &mut faults);
     refuse_what_is_not_simulated(scenario, &mut faults);
     if !faults.is_empty() {
         return Err(faults.into_errors());
     }
     let spec = ModelSpec {
-        vehicles: specs,
-        shapes,
-        pairs,
-        mechanisms,
-        actuators: table.actuators.clone(),
-        environment: environment(&scenario.environment),
+        vehicles: parts.vehicles,
+        shapes: parts.shapes,
+        pairs: parts.pairs,
+        mechanisms: parts.mechanisms,
+        actuators: parts.table.actuators.clone(),
+        effects: parts.effects,
+        environment: parts.environment,
         integrator: integrator(scenario.integrator.kind),
         step: scenario.integrator.step_s,
         one_sided_force: Vec3::zeros(),
@@ -84,7 +91,7 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
         }
     };
     let Some((model, drives)) = model else { return Err(faults.into_errors()) };
-    finish(scenario, robots, (&Arc::new(model), drives), &table, faults)
+    finish(scenario, robots, (&Arc::new(model), drives), &parts.table, faults)
 }
 
 fn finish(
@@ -118,9 +125,6 @@ fn samples(scenario: &Scenario) -> u64 {
 fn refuse_what_is_not_simulated(scenario: &Scenario, faults: &mut Faults<'_>) {
     let later =
         |what: &str| format!("{what} are read and checked, but not simulated in this version; remove the entry");
-    if !scenario.effects.is_empty() {
-        faults.add("effect[0]", later("effects"));
-    }
     if !scenario.sensors.is_empty() {
         faults.add("sensor[0]", later("sensors"));
     }

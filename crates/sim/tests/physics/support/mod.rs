@@ -112,6 +112,7 @@ pub(crate) fn spec(vehicles: Vec<(Tree, Base)>, setup: &Setup) -> ModelSpec {
         pairs: Vec::new(),
         mechanisms: Vec::new(),
         actuators: Vec::new(),
+        effects: Vec::new(),
         environment: setup.environment,
         integrator: setup.integrator,
         step: setup.step,
