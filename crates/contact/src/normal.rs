@@ -141,6 +141,18 @@ impl Normal {
         out
     }
 
+    /// The repulsive part alone, N: what friction is bounded by.
+    #[inline]
+    pub fn calc_compression(&self, gap: f64, gap_rate: f64) -> f64 {
+        self.law.eval(gap, gap_rate).force
+    }
+
+    /// What adhesion takes off the repulsion at a gap, N.
+    #[inline]
+    pub fn adhesion_at(&self, gap: f64) -> f64 {
+        if gap < 0.0 { self.adhesion } else { 0.0 }
+    }
+
     /// Energy stored in the spring at `gap`, J, less the work that adhesion has to be paid to part: k δⁿ⁺¹/(n+1) − p δ.
     pub fn calc_stored_energy(&self, gap: f64) -> f64 {
         self.law.calc_stored_energy(gap) - self.adhesion * (-gap).max(0.0)

@@ -8,6 +8,7 @@ pub mod effects;
 mod error;
 mod glob;
 mod load;
+pub mod measure;
 pub mod outcome;
 mod overrides;
 mod schema;

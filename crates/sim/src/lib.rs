@@ -36,6 +36,7 @@ mod mechanism;
 mod model;
 mod pivots;
 mod rk4;
+mod rk4_bristle;
 mod run;
 mod solve;
 mod state;

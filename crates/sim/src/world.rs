@@ -257,6 +257,13 @@ impl World {
         }
     }
 
+    /// Evaluates contact at the present state, so that [`Self::touches`] tells the forces of this instant and not those
+    /// of the step that led to it: what a force sensor reads now. Nothing advances.
+    pub fn refresh_touches(&mut self) {
+        self.refresh();
+        rk4::refresh_touches(&self.model, &self.state, &mut self.ws);
+    }
+
     /// The points that touched in the last step.
     pub fn touches(&self) -> impl Iterator<Item = TouchReport> + '_ {
         self.ws.touches.iter().map(|t| TouchReport {

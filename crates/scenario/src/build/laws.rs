@@ -81,5 +81,6 @@ fn bristle(law: &BristleFriction) -> Bristle {
         stiffness: law.stiffness_n_per_m,
         damping: law.damping_n_s_per_m,
         viscous: law.viscous_n_s_per_m,
+        ..Bristle::default()
     }
 }

@@ -101,6 +101,7 @@ fn finish(
     table: &ActuatorTable,
     mut faults: Faults<'_>,
 ) -> Result<Mission, ScenarioErrors> {
+    check_sensors(scenario, model, &mut faults);
     let world = mechanisms::settle(scenario, start::world(scenario, model, table, &mut faults));
     let controller = strategy::build(scenario, model, table, &mut faults);
     match controller {
@@ -123,10 +124,19 @@ fn samples(scenario: &Scenario) -> u64 {
 
 /// The file's words are ahead of the simulator's: what is understood and not yet simulated is refused, never ignored.
 fn refuse_what_is_not_simulated(scenario: &Scenario, faults: &mut Faults<'_>) {
-    let later =
-        |what: &str| format!("{what} are read and checked, but not simulated in this version; remove the entry");
-    if !scenario.sensors.is_empty() {
-        faults.add("sensor[0]", later("sensors"));
+    for (i, _) in scenario.sensors.iter().enumerate().filter(|(_, s)| !s.kind.is_simulated()) {
+        let reason = "sensors of this kind are read and checked, but not simulated in this version; remove the entry";
+        faults.add(&format!("sensor[{i}]"), reason);
+    }
+}
+
+/// Every sensor measures something.
+fn check_sensors(scenario: &Scenario, model: &Model, faults: &mut Faults<'_>) {
+    for (i, sensor) in scenario.sensors.iter().enumerate() {
+        let name = format!("sensor.{}.force", sensor.name);
+        if let Err(error) = crate::measure::Gauge::resolve(scenario, model, &name) {
+            faults.add(&format!("sensor[{i}]"), error.fault);
+        }
     }
 }
 

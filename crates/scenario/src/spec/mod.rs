@@ -30,7 +30,7 @@ pub use mechanism::{
     Capture, Hold, Latch, Mechanism, MechanismKind, MechanismSide, Overload, PerAxis, Strut, StrutSides, Weld,
 };
 pub use pose::{PoseSpec, TwistSpec};
-pub use sensor::{Sensor, SensorKind};
+pub use sensor::{MechanismEnd, Sensor, SensorKind};
 pub use shape::{Shape, ShapeKind};
 pub use strategy::{Command, OneOrMany, Replay, Schedule, Strategy, TrackAndGrasp};
 pub use vehicle::{Base, BaseAxis, BaseKind, EndEffectorPose, JointStart, PartialBase, Vehicle};
