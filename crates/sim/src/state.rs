@@ -23,7 +23,8 @@ pub struct State {
     /// Joint rates of all vehicles.
     pub v: Vec<f64>,
     /// Per vehicle: angular momentum about W's origin (moment slot, N·m·s), linear momentum (force slot, N·s), of its bodies
-    /// and of the parts that effects put inside them. Components that the base's guide holds are not kept.
+    /// and of the parts that effects put inside them. Components that the base's guide holds are not kept. Of a driven
+    /// vehicle: what all others have given it since the start.
     pub momentum: Vec<Wrench>,
     /// Touching points' bristles, sorted by pair and feature.
     pub bristles: Vec<ContactMemory>,
@@ -103,6 +104,9 @@ pub struct Account {
     /// What mechanisms have dissipated by their laws, J; with what a latch had stored when it let go.
     #[serde(default)]
     pub mechanism_loss: f64,
+    /// Work of prescribed motions, J; their impulse is with the external ones.
+    #[serde(default)]
+    pub drive_work: f64,
     /// Work of effects on joints, J (negative: stored or dissipated); that on bodies is with the external work.
     #[serde(default)]
     pub effect_work: f64,
@@ -189,6 +193,7 @@ impl Account {
         self.contact_work += other.contact_work * k;
         self.mechanism_work += other.mechanism_work * k;
         self.mechanism_loss += other.mechanism_loss * k;
+        self.drive_work += other.drive_work * k;
         self.effect_work += other.effect_work * k;
         self.effect_loss += other.effect_loss * k;
     }

@@ -12,6 +12,7 @@
 
 use crate::actuator::{ActuatorKind, CoordinatePoint, calc_thrust};
 use crate::contacts::{Outcome, Place, Touch, commit_bristles, find_touches};
+use crate::drive;
 use crate::effect::{self, Acting};
 use crate::mechanism;
 use crate::model::{Base, Model};
@@ -44,6 +45,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     let h = ws.step;
     ws.since = None;
     begin(model, state, ws);
+    drive::begin(model, state, ws, h);
     if scheme == Scheme::ImplicitMidpoint {
         effect::drift_to_midpoint(model, state, ws, 0.5 * h);
         drift_to_midpoint(model, state, ws, 0.5 * h);
@@ -62,9 +64,11 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
         Scheme::ImplicitMidpoint => drift_from_midpoint(model, state, ws, 0.5 * h),
         _ => drift(model, state, ws, h),
     }
+    drive::place(model, state, ws.end);
     ws.update_positions(model, state);
     place_centres(model, state, ws, scheme);
     finish(model, state, ws);
+    drive::add_step(model, state, ws);
     pivots::commit(ws);
     commit_bristles(model, state, ws);
     mechanism::commit(model, state, ws);
@@ -75,7 +79,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
 /// The drift of the base origin is off by O(h²), and L − x × p turns that into spin: a body flying at 1 m/s and turning at
 /// 1 rad/s would be pushed aside by ½ mm/s, and its rotation would depend on the frame that one looks from.
 fn place_centres(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
-    for (i, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| v.base != Base::Fixed) {
+    for (i, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| !v.base.is_held()) {
         let start = &ws.momentum_start[i];
         let mean = match scheme {
             Scheme::ImplicitMidpoint => 0.5 * (start + own_momentum(model, state, ws, i)),
@@ -120,7 +124,9 @@ pub(crate) fn begin(model: &Model, state: &State, ws: &mut Workspace) {
 
 /// Velocities at the new state, whose positions `ws` holds, and what is remembered of it.
 pub(crate) fn finish(model: &Model, state: &mut State, ws: &mut Workspace) {
+    let now = std::mem::replace(&mut state.time, ws.end);
     ws.update_velocities(model, state);
+    state.time = now;
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| c.dry.is_some()) {
         let moved = state.q[coordinate.q_index] - ws.q_start[coordinate.q_index];
         state.dry[i] = coordinate.advance_dry(state.dry[i], moved, ws.step);
@@ -158,7 +164,7 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
         for k in range.clone() {
             ws.v_mid[k] = state.v[k] + if half_gain { 0.5 * ws.v_gain[k] } else { 0.0 };
         }
-        let motion = Accelerations { base: Twist::default(), v: &ws.v_mid[range.clone()], v_dot: &ws.zero[range] };
+        let motion = Accelerations { base: ws.base_acceleration[i], v: &ws.v_mid[range.clone()], v_dot: &ws.zero[range] };
         let bodies = vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len();
         ws.dynamics[i].calc_body_wrenches(&vehicle.tree, &ws.kin[i], &motion, &ws.external[bodies.clone()]);
         ws.bias[bodies].copy_from_slice(&ws.dynamics[i].wrench);
@@ -406,7 +412,7 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
 fn add_impulse(model: &Model, state: &mut State, ws: &Workspace, body: usize, point: &Vec3, impulse: &Wrench) {
     let Some(&(vehicle, _)) = model.owners.get(body) else { return };
     let owner = &model.vehicles[vehicle];
-    if owner.base == Base::Free {
+    if matches!(owner.base, Base::Free | Base::Driven(_)) {
         state.momentum[vehicle] += *impulse;
     } else if owner.base != Base::Fixed {
         let anchor = ws.kin[vehicle].anchor;
@@ -438,7 +444,7 @@ fn drift_joints(model: &Model, state: &mut State, ws: &mut Workspace, h: f64) {
 }
 
 pub(crate) fn moved_base(base: Base, pose: &Pose, moved: &Vec3, turned: &Vec3) -> Pose {
-    if base == Base::Fixed {
+    if base.is_held() {
         return *pose;
     }
     let mask = base.mask();
@@ -456,6 +462,7 @@ fn drift_to_midpoint(model: &Model, state: &mut State, ws: &mut Workspace, half:
         state.bases[i] = moved_base(vehicle.base, &state.bases[i], &(half * twist.lin), &(half * twist.ang));
     }
     drift_joints(model, state, ws, half);
+    drive::place(model, state, state.time + half);
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let base = ws.base_start[i];
         let kin = &mut ws.kin[i];

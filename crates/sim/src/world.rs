@@ -1,5 +1,6 @@
 //! A model and its state, advancing.
 
+use crate::drive;
 use crate::effect;
 use crate::error::StepError;
 use crate::mechanism::{self, MechanismKind, MechanismMemory, MechanismReport};
@@ -101,6 +102,8 @@ impl World {
     /// Brings kinematics and twists up to a state that was changed.
     pub fn refresh(&mut self) {
         if !self.is_fresh {
+            let now = self.state.time;
+            drive::place(&self.model, &mut self.state, now);
             self.ws.update_positions(&self.model, &self.state);
             self.ws.update_velocities(&self.model, &self.state);
             self.is_fresh = true;
@@ -110,6 +113,8 @@ impl World {
     /// Sets base twists (about each base's origin, W axes) at the present poses and rates: writes the momentum. What
     /// effects put inside the bodies comes to rest with them; [`World::set_effect_memory`] moves it.
     pub fn set_base_twists(&mut self, twists: &[Twist]) {
+        let now = self.state.time;
+        drive::place(&self.model, &mut self.state, now);
         self.ws.update_positions(&self.model, &self.state);
         for (i, vehicle) in self.model.vehicles.iter().enumerate() {
             let kin = &mut self.ws.kin[i];
