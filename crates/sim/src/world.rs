@@ -169,12 +169,13 @@ impl World {
         (self.state.time, self.state.commands) = (now, present);
     }
 
-    /// Sets the effects' memory that depends on commands to rest under the present ones: a gear that yields carries the
-    /// drive's effort, a lag has passed. The first step does it by itself; a caller who wants to start from other memory
-    /// calls this before and changes [`State::effects`] then.
+    /// Sets the effects' memory as if all had stood as it is for long: a gear that yields carries what holds its joint
+    /// still (on a vehicle that moves as a whole: the drive's effort), a lag has passed. The first step does it by itself;
+    /// a caller who wants to start from other memory calls this before and changes [`State::effects`] then.
     pub fn settle_effects(&mut self) {
         if !self.state.is_settled {
-            effect::settle(&self.model, &mut self.state);
+            self.refresh();
+            effect::settle(&self.model, &mut self.state, &mut self.ws);
             self.state.is_settled = true;
         }
     }
