@@ -27,7 +27,7 @@ pub(crate) use line::{Lines, accept, next_switch};
 
 use crate::actuator::{Coordinate, CoordinatePoint};
 use crate::error::ModelError;
-use crate::model::{Base, Model};
+use crate::model::{Base, Integrator, Model};
 use crate::state::State;
 use crate::step::{Scheme, calc_bias, calc_external};
 use crate::workspace::Workspace;
@@ -208,6 +208,17 @@ pub(crate) fn commit(model: &Model, state: &mut State, ws: &Workspace) {
             EffectKind::Line(_) | EffectKind::Series(_) => {}
         }
     }
+}
+
+/// Longest step that the effects bear at the present rates, s: an explicit step that passes a reversal of dry friction
+/// in one stride makes of its corner what it likes.
+pub(crate) fn calc_longest_step(model: &Model, state: &State) -> f64 {
+    let is_slow = |effect: &Effect| match &effect.kind {
+        EffectKind::Joint(joint) => joint.is_near_reversal(state.v[joint.coordinate]),
+        EffectKind::Series(_) | EffectKind::Line(_) => false,
+    };
+    let is_fine = model.integrator == Integrator::RungeKutta4 && model.effects.list.iter().any(is_slow);
+    if is_fine { joint::REVERSAL_STEP } else { f64::INFINITY }
 }
 
 /// Puts the memory that a start at rest decides to that rest: gears carry what holds their joints still, lags have passed.
