@@ -36,7 +36,7 @@ pub struct State {
     /// Memory of the effects, in the model's order; zero where all is at rest and unloaded.
     #[serde(default)]
     pub effects: Vec<f64>,
-    /// Whether the effects' memory knows the first commands: see [`crate::World::settle_effects`].
+    /// Whether the effects' memory has been set for the start: see [`crate::World::settle_effects`].
     #[serde(default)]
     pub is_settled: bool,
     /// Commands that act on actuators with a delay; empty before the first step, and where no effect delays one.

@@ -11,8 +11,8 @@
 //! | [`commit`] | memory that follows exactly from what an accepted step did, whatever the integrator | the end of a step |
 //!
 //! Memory stands in [`State::effects`], one stretch per effect in the model's order; it is zero where everything is at
-//! rest and unloaded. What depends on the first commands (a loaded gear, a lagging drive) is set by [`settle`], once,
-//! when the first step begins: at rest under those commands.
+//! rest and unloaded. What a start under load needs (a gear that carries an arm's weight, a drive that lags behind its
+//! first command) is set by [`settle`], once, when the first step begins: as if all had stood so for long.
 //! A world without effects pays one comparison per hook.
 
 mod body;
@@ -33,9 +33,9 @@ pub(crate) use memory::{calc_relative, is_blank, rest_parts, set_relative};
 
 use crate::actuator::{Coordinate, CoordinatePoint};
 use crate::error::ModelError;
-use crate::model::Model;
+use crate::model::{Base, Integrator, Model};
 use crate::state::State;
-use crate::step::Scheme;
+use crate::step::{Scheme, calc_bias, calc_external};
 use crate::workspace::Workspace;
 use multibody::Kinematics;
 use spatial::{Vec3, Wrench};
@@ -245,18 +245,49 @@ pub(crate) fn commit(model: &Model, state: &mut State, ws: &Workspace) {
     }
 }
 
-/// Puts the memory that the first commands decide to rest under them: gears carry the drives' efforts, lags have passed.
-pub(crate) fn settle(model: &Model, state: &mut State) {
+/// Longest step that the effects bear at the present rates, s: an explicit step that passes a reversal of dry friction
+/// in one stride makes of its corner what it likes.
+pub(crate) fn calc_longest_step(model: &Model, state: &State) -> f64 {
+    let is_slow = |effect: &Effect| match &effect.kind {
+        EffectKind::Joint(joint) => joint.is_near_reversal(state.v[joint.coordinate]),
+        EffectKind::Series(_) | EffectKind::Line(_) => false,
+    };
+    let is_fine = model.integrator == Integrator::RungeKutta4 && model.effects.list.iter().any(is_slow);
+    if is_fine { joint::REVERSAL_STEP } else { f64::INFINITY }
+}
+
+/// Puts the memory that a start at rest decides to that rest: gears carry what holds their joints still, lags have passed.
+pub(crate) fn settle(model: &Model, state: &mut State, ws: &mut Workspace) {
+    if model.effects.has_motion {
+        // The loads of all joints at zero acceleration: tau, as the solve takes them.
+        calc_external(model, state, ws);
+        calc_bias(model, state, ws, false);
+        for (i, vehicle) in model.vehicles.iter().enumerate() {
+            let bodies = vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len();
+            ws.dynamics[i].wrench.copy_from_slice(&ws.bias[bodies]);
+            ws.dynamics[i].collect(&vehicle.tree, &ws.kin[i], &mut ws.tau[vehicle.v_range()]);
+        }
+    }
     for (index, effect) in model.effects.list.iter().enumerate() {
         let acting = Acting { model, state, step: model.step, since: None };
         let at = model.effects.memory(index);
         let rest = match &effect.kind {
-            EffectKind::Series(series) => series.calc_rest(&acting),
+            EffectKind::Series(series) => series.calc_rest(calc_load(series.coordinate, &acting, ws)),
             EffectKind::Line(line) if !at.is_empty() => line.calc_demand(&acting),
             EffectKind::Line(_) | EffectKind::Joint(_) | EffectKind::Body(_) | EffectKind::Tilt(_) => continue,
         };
         state.effects[at.start] = rest;
     }
+}
+
+/// Effort that holds a coordinate still: its load less its own passive efforts. Of a vehicle that moves as a whole the
+/// load is not known before the motion is: there the drive's effort stands for it.
+fn calc_load(i: usize, acting: &Acting<'_>, ws: &Workspace) -> f64 {
+    let (model, state, coordinate) = (acting.model, acting.state, &acting.model.coordinates[i]);
+    let still = CoordinatePoint::still(state.q[coordinate.q_index], state.v[i], acting.step);
+    let force = coordinate.eval(&still, state.v[i], acting);
+    let is_fixed = |v: &&crate::Vehicle| v.v_range().contains(&i) && v.base == Base::Fixed;
+    if model.vehicles.iter().any(|v| is_fixed(&v)) { ws.tau[i] - (force.effort - force.through) } else { force.driven }
 }
 
 /// Energy that effects hold, J: in springs, in the rotors behind them, and in parts inside bodies.

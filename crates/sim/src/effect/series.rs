@@ -129,12 +129,9 @@ impl Series {
         [memory[0] + acting.step * mean, rate]
     }
 
-    /// Deflection at rest under the present commands, rad or m.
-    pub(super) fn calc_rest(&self, acting: &Acting<'_>) -> f64 {
-        let coordinate = &acting.model.coordinates[self.coordinate];
-        let (q, v) = (acting.state.q[coordinate.q_index], acting.state.v[self.coordinate]);
-        let (effort, _) = coordinate.drive(&CoordinatePoint::still(q, v, acting.step), (q, v), acting);
-        if effort == 0.0 { 0.0 } else { effort / self.stiffness + (0.5 * self.gap).copysign(effort) }
+    /// Deflection that carries a load at rest, rad or m.
+    pub(super) fn calc_rest(&self, load: f64) -> f64 {
+        if load == 0.0 { 0.0 } else { load / self.stiffness + (0.5 * self.gap).copysign(load) }
     }
 
     /// In the spring and in the rotor, J.
