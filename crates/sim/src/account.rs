@@ -137,7 +137,9 @@ impl Energy {
         let kinetic = model.vehicles.iter().enumerate().map(of).sum();
         let mut potential = 0.0;
         if !model.environment.is_still() {
-            for_each_link(world, |m, x, _| potential += model.environment.calc_potential(world.state().time, &x, m));
+            let mut add = |m, x| potential += model.environment.calc_potential(world.state().time, &x, m);
+            for_each_link(world, |m, x, _| add(m, x));
+            effect::particles(model, world.state()).for_each(|(m, x)| add(m, x));
         }
         let elastic = world.touches().map(|t| calc_elastic(world, &t)).sum();
         let mechanism = world.mechanisms().map(|m| m.stored).sum();

@@ -27,7 +27,7 @@ pub use line::{LineEffect, LineLaw};
 pub use memory::{MemorySlot, memory_layout};
 pub use series::Series;
 
-pub(crate) use body::{Parts, add_impulses, calc_carried, calc_carried_linear, drift_to_midpoint};
+pub(crate) use body::{Parts, add_impulses, calc_carried, calc_carried_linear, drift_to_midpoint, particles};
 pub(crate) use line::{Lines, accept, next_switch};
 pub(crate) use memory::{calc_relative, is_blank, rest_parts, set_relative};
 

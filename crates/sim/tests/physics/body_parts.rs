@@ -247,8 +247,12 @@ fn a_falling_tank_does_not_slosh() {
     let mut world = with_parts(&[slosh(4.0, 0.4, 0.02)], Base::Free, &setup);
     world.set_base_twists(&[twist([0.0; 3], [0.0; 3])]);
     let mut audit = MomentumAudit::new(&world);
+    let total = |w: &World| Energy::of(w).kinetic + Energy::of(w).potential + Energy::of(w).effect;
+    let start = total(&world);
     run(&mut world, 1000);
     audit.update(&world);
+    assert!((total(&world) - start).abs() < 1e-9, "some 2 kJ of fall come back as motion");
+    assert!((world.state().account.external_work - 0.5 * 45.0 * 9.81 * 9.81).abs() < 1e-9);
     assert!(world.effect_memory().iter().all(|x| x.abs() < 1e-12));
     assert!((world.state().account.impulse.force.z + 45.0 * 9.81).abs() < 1e-9, "the particle's weight counts");
     assert!(audit.linear_drift < 1e-12);

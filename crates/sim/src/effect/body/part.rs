@@ -157,6 +157,14 @@ pub(crate) fn calc_carried(model: &Model, state: &State, vehicle: usize, kin: &K
     sum
 }
 
+/// Masses (kg) and places in W of the parts that have weight.
+pub(crate) fn particles<'a>(model: &'a Model, state: &'a State) -> impl Iterator<Item = (f64, Vec3)> + 'a {
+    of_bodies(model).filter_map(|(index, effect)| {
+        let particle = effect.law.particle(&state.effects[model.effects.memory(index)]);
+        particle.map(|(mass, place, _)| (mass, place))
+    })
+}
+
 /// Linear momentum of the parts inside a vehicle's bodies, N·s; a function of the memory alone.
 pub(crate) fn calc_carried_linear(model: &Model, state: &State, vehicle: usize) -> Vec3 {
     let own = |(index, effect): (usize, &BodyEffect)| {
