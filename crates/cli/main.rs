@@ -5,12 +5,14 @@
 #![allow(clippy::print_stdout)] // a command prints
 
 mod check;
+mod diagnose;
 mod lab;
 mod live;
 mod new;
 mod progress;
 mod run;
 mod schema;
+mod score;
 mod summary;
 mod view;
 
@@ -50,8 +52,12 @@ enum Subcommands {
     View(view::Arguments),
     /// Small experiments on contact and friction, each figure beside its closed form
     Lab(lab::Arguments),
-    /// Print the JSON Schema of the scenario file
-    Schema,
+    /// Where a scenario and a recording differ, what was left out, and how much better it predicts with it
+    Diagnose(diagnose::Arguments),
+    /// Judge a folder of diagnoses against answer keys
+    Score(score::Arguments),
+    /// Print the JSON Schema of the scenario file, or of diagnosis.json
+    Schema(schema::Arguments),
 }
 
 /// How a command ended.
@@ -72,7 +78,9 @@ fn main() -> ExitCode {
         Subcommands::New(arguments) => new::main(&arguments),
         Subcommands::View(arguments) => view::main(&arguments),
         Subcommands::Lab(arguments) => lab::main(&arguments),
-        Subcommands::Schema => schema::main(),
+        Subcommands::Diagnose(arguments) => diagnose::main(&arguments),
+        Subcommands::Score(arguments) => score::main(&arguments),
+        Subcommands::Schema(arguments) => schema::main(&arguments),
     };
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,

@@ -2,3 +2,39 @@
 //!
 //! **scenario + recording → replay → residual → locate → hypotheses → fit → rank → report.** To diagnose is to search over
 //! `[[effect]]` entries of a copy of the scenario; every hypothesis is simulated by the same `sim` that runs scenarios.
+//!
+//! What comes out: a [`Diagnosis`] (`diagnosis.json`) and, behind it, [`Evidence`]; from the two the page of [`report`], the text
+//! of [`summary_text`] and the scenario of [`patched_toml`]. [`score`] judges diagnoses against answer keys.
+
+pub mod catalogue;
+pub mod diagnosis;
+pub mod error;
+pub mod evidence;
+pub mod facts;
+pub mod fit;
+pub mod guess;
+pub mod hypothesis;
+pub mod linear;
+mod number;
+mod patched;
+pub mod plant;
+pub mod reading;
+pub mod replay;
+pub mod report;
+pub mod score;
+pub mod screen;
+pub mod search;
+pub mod start;
+mod summary;
+pub mod tape;
+pub mod trial;
+mod vocabulary;
+pub mod words;
+
+pub use diagnosis::Diagnosis;
+pub use error::DiagnoseError;
+pub use evidence::Evidence;
+pub use patched::{FILE as PATCHED_FILE, patched_toml};
+pub use report::report_html;
+pub use summary::summary_text;
+pub use vocabulary::{plain_name, unit};

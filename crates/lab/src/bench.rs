@@ -42,6 +42,7 @@ impl Bench {
             shapes: Vec::new(),
             pairs: Vec::new(),
             actuators: Vec::new(),
+            effects: Vec::new(),
             mechanisms: Vec::new(),
             environment: Environment::DeepSpace,
             integrator: Integrator::ImplicitEuler,

@@ -3,7 +3,7 @@
 //!   U = Iᴬ S,  D = Sᵀ U,  u = τ − Sᵀ pᴬ
 //!   to the parent:  Iᴬ − U D⁻¹ Uᵀ,   pᴬ + Iᵃ c + U D⁻¹ u
 //!
-//! A mimic joint couples two places of the tree and breaks the recursion: use the mass matrix there.
+//! A joint's armature adds to its D. A mimic joint couples two places of the tree and breaks the recursion: use the mass matrix there.
 
 use crate::{Dynamics, Kinematics, Tree};
 use spatial::{Mat3, SpatialMatrix, Twist, Wrench, nalgebra};
@@ -90,6 +90,9 @@ impl Dynamics {
             for l in 0..joint.width {
                 d[(l, k)] = kin.screws[joint.column + l].dot(&u);
             }
+        }
+        for k in 0..joint.width {
+            d[(k, k)] += joint.armature;
         }
         let d_inverse = if joint.width == 1 { Mat6::from_diagonal_element(1.0 / d[(0, 0)]) } else { d.try_inverse()? };
         scratch.d_inverse[j] = d_inverse;

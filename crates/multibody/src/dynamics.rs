@@ -48,7 +48,13 @@ impl Dynamics {
         tau: &mut [f64],
     ) -> Wrench {
         self.calc_body_wrenches(tree, kin, motion, external);
-        self.collect(tree, kin, tau)
+        let base = self.collect(tree, kin, tau);
+        for joint in tree.joints.iter().filter(|j| j.armature != 0.0 && !j.is_mimic) {
+            for k in joint.v_index..joint.v_index + joint.width {
+                tau[k] += joint.armature * motion.v_dot[k];
+            }
+        }
+        base
     }
 
     /// First half of the inverse dynamics: per body, the wrench that its motion takes beyond the external ones.
@@ -114,6 +120,11 @@ impl Dynamics {
             self.add_joint_rows(tree, kin, j, m, stride);
             let composite = self.composite[j + 1];
             self.composite[tree.bodies[j + 1].parent] += composite;
+        }
+        for joint in tree.joints.iter().filter(|j| j.armature != 0.0 && !j.is_mimic) {
+            for k in 6 + joint.v_index..6 + joint.v_index + joint.width {
+                m[k * stride + k] += joint.armature;
+            }
         }
         write_base_block(&self.composite[0], m, stride);
     }
@@ -187,9 +198,15 @@ pub fn calc_centroidal_momentum(kin: &Kinematics) -> (Vec3, Wrench) {
     (kin.anchor + com, calc_momentum(kin).about(&com))
 }
 
-/// Kinetic energy, J.
+/// Kinetic energy of the bodies, J; that of the armatures is [`calc_armature_energy`].
 pub fn calc_kinetic_energy(kin: &Kinematics) -> f64 {
     kin.inertia.iter().zip(&kin.vel).map(|(i, v)| i.kinetic_energy(v)).sum()
+}
+
+/// Kinetic energy of the joints' armatures at the rates `v`, J.
+pub fn calc_armature_energy(tree: &Tree, v: &[f64]) -> f64 {
+    let of = |j: &crate::Joint| 0.5 * j.armature * v[j.v_index..j.v_index + j.width].iter().map(|v| v * v).sum::<f64>();
+    tree.joints.iter().filter(|j| j.armature != 0.0 && !j.is_mimic).map(of).sum()
 }
 
 /// Potential energy in a uniform gravity field (W axes, m/s²), zero at the world's origin, J.

@@ -10,18 +10,22 @@
 //! | `run.rrd` | `rerun_sink::write_rrd` (feature `rerun`) | eyes with the Rerun viewer |
 //! | `summary.json` | [`OutputFolder::finish`] | outcome, metrics; its presence says that the folder is whole |
 //!
-//! `read_parquet` and `read_csv` read recordings back, from softdock or from a rig.
+//! `read_parquet` and `read_csv` read runs of softdock back; [`RecordingSet::load`] reads what a rig recorded: a folder
+//! with `recording.toml`, forgiving where a rig is and exact in what it says about it.
 
 mod channel;
+pub mod consistency;
 mod csv_file;
 mod error;
 mod folder;
+//pub mod inspect;
 mod log;
 mod mechanisms;
 mod mesh;
 mod observe;
 mod parquet_file;
 pub mod plot;
+mod recording;
 #[cfg(feature = "rerun")]
 pub mod rerun_sink;
 mod scene;
@@ -34,4 +38,5 @@ pub use log::{ContactSample, Event, EventKind, Log, Meta, Sample};
 pub use mesh::{TriangleMesh, docking_of_geometry, triangulate};
 pub use observe::{Probe, Recorder, RecorderPlan, SampleSink};
 pub use parquet_file::{SIGNALS_FORMAT, encode_parquet, read_parquet, write_parquet};
+pub use recording::{ChannelName, Quantity, RecordedRun, RecordingSet, Remark, Role, Series, Severity, units};
 pub use scene::{Scene, SceneLink, SceneVehicle, Trail};

@@ -4,6 +4,7 @@
 
 mod build;
 mod document;
+pub mod effects;
 mod error;
 mod glob;
 mod load;

@@ -7,9 +7,10 @@
 //!
 //! A single link does not move in that frame: its own momentum about W's origin is the scale then.
 
+use crate::effect;
 use crate::model::Base;
 use crate::world::{TouchReport, World};
-use multibody::calc_kinetic_energy;
+use multibody::{calc_armature_energy, calc_kinetic_energy};
 use spatial::{Vec3, Wrench};
 
 /// Follows a run's momentum from its start.
@@ -112,7 +113,7 @@ fn for_each_link(world: &World, mut visit: impl FnMut(f64, Vec3, Wrench)) {
 /// Where the energy is, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Of motion.
+    /// Of motion, the joints' reflected rotors included.
     pub kinetic: f64,
     /// In gravity or the tide.
     pub potential: f64,
@@ -120,20 +121,26 @@ pub struct Energy {
     pub elastic: f64,
     /// Stored in mechanisms.
     pub mechanism: f64,
+    /// Held by effects: in their springs, and in rotors behind a gear that yields.
+    pub effect: f64,
 }
 
 impl Energy {
     /// At the world's present state.
     pub fn of(world: &World) -> Self {
         let model = world.model();
-        let kinetic = (0..model.vehicles.len()).map(|i| calc_kinetic_energy(world.kinematics(i))).sum();
+        let of = |(i, v): (usize, &crate::Vehicle)| {
+            calc_kinetic_energy(world.kinematics(i)) + calc_armature_energy(&v.tree, &world.state().v[v.v_range()])
+        };
+        let kinetic = model.vehicles.iter().enumerate().map(of).sum();
         let mut potential = 0.0;
         if !model.environment.is_still() {
             for_each_link(world, |m, x, _| potential += model.environment.calc_potential(world.state().time, &x, m));
         }
         let elastic = world.touches().map(|t| calc_elastic(world, &t)).sum();
         let mechanism = world.mechanisms().map(|m| m.stored).sum();
-        Self { kinetic, potential, elastic, mechanism }
+        let effect = effect::calc_energy(model, world.state());
+        Self { kinetic, potential, elastic, mechanism, effect }
     }
 }
 

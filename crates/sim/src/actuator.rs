@@ -5,10 +5,15 @@
 //!   τ = −b v + stop(q, v) + dry friction + Σ drives,     drive = clamp(k_p (q_ref − q) + k_d (v_ref − v) + τ_ff, ±limit)
 //!   stop = max(0, k (lower − q) − c v) below, likewise above; never pulls
 //!
+//! Effects add efforts of their own, change what a drive delivers, or part it from the joint by a gear that yields.
+//!
 //! The stop's stiffness brings the joint to rest within about 10 mrad (1 mm) of overtravel at its full effort, up to
 //! 1e5 N·m/rad (1e6 N/m). Dry
 //! friction is the bristle of [`friction`] in one dimension, with the deflection at breakaway of 3e-4 rad or m.
 
+use crate::effect::{Acting, EffectKind, Series};
+use crate::model::Model;
+use crate::state::State;
 use friction::{Bristle, Trial};
 use multibody::{Joint, JointKind};
 use serde::{Deserialize, Serialize};
@@ -92,6 +97,10 @@ pub struct Coordinate {
     pub stop_damping: f64,
     /// Actuators that act here.
     pub actuators: Vec<usize>,
+    /// Effects that act here with an effort of their own.
+    pub effects: Vec<usize>,
+    /// The effect that parts the actuators from the joint: a gear that yields.
+    pub series: Option<usize>,
 }
 
 /// Deflection at which dry joint friction breaks away, rad or m.
@@ -120,12 +129,15 @@ impl Coordinate {
             stop_stiffness,
             stop_damping: STOP_TIME * stop_stiffness,
             actuators: Vec::new(),
+            effects: Vec::new(),
+            series: None,
         }
     }
 
     /// Whether nothing acts here.
     pub fn is_idle(&self) -> bool {
-        self.damping == 0.0 && self.dry.is_none() && self.limits.is_none() && self.actuators.is_empty()
+        let is_passive = self.damping == 0.0 && self.dry.is_none() && self.limits.is_none();
+        is_passive && self.actuators.is_empty() && self.effects.is_empty() && self.series.is_none()
     }
 }
 
@@ -140,14 +152,37 @@ pub(crate) struct CoordinatePoint {
     pub theta: f64,
     pub dry_start: f64,
     pub elapsed: f64,
+    /// At an explicit stage: the rate at the step's start, and the time since then.
+    pub from: Option<(f64, f64)>,
 }
 
-/// Effort on a coordinate, −∂τ/∂v', and the part that actuators give.
+impl CoordinatePoint {
+    /// At a position and rate that depend on nothing.
+    pub fn still(q: f64, v: f64, elapsed: f64) -> Self {
+        let (moved_base, beta, theta, dry_start, from) = (0.0, 0.0, 0.0, 0.0, None);
+        Self { q_base: q, moved_base, v_start: v, beta, theta, dry_start, elapsed, from }
+    }
+
+    /// The end of a step that moved the coordinate by `moved`, whose laws were last evaluated at `last`.
+    pub fn at_end(moved: f64, last: &Self, step: f64) -> Self {
+        let from = last.from.map(|(v, _)| (v, step));
+        Self { moved_base: moved, beta: 0.0, theta: 0.0, from, ..*last }
+    }
+}
+
+/// Effort on a coordinate, −∂τ/∂v', and its parts.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CoordinateForce {
     pub effort: f64,
     pub slope: f64,
+    /// What the actuators give, on the motor side.
     pub driven: f64,
+    /// What of it arrives on the link side: the same, but for a gear that yields.
+    pub through: f64,
+    /// What effects give, beside such a gear.
+    pub by_effects: f64,
+    /// Mean rate of a motor that is not the joint's own.
+    pub motor_rate: Option<f64>,
 }
 
 impl Coordinate {
@@ -168,13 +203,7 @@ impl Coordinate {
     }
 
     /// The law of this coordinate at the rate `v_new`.
-    pub(crate) fn eval(
-        &self,
-        at: &CoordinatePoint,
-        v_new: f64,
-        actuators: &[Actuator],
-        commands: &[Command],
-    ) -> CoordinateForce {
+    pub(crate) fn eval(&self, at: &CoordinatePoint, v_new: f64, acting: &Acting<'_>) -> CoordinateForce {
         let (q, v) = (at.q_base + at.beta * v_new, (1.0 - at.theta) * at.v_start + at.theta * v_new);
         let mut out =
             CoordinateForce { effort: -self.damping * v, slope: self.damping * at.theta, ..Default::default() };
@@ -196,17 +225,84 @@ impl Coordinate {
             out.effort += brush.force.x;
             out.slope += if brush.sticks { brush.by_deflection.across * at.beta } else { 0.0 };
         }
+        match self.series.and_then(|index| acting.model.series(index)) {
+            None => self.add_drives((at, q, v), acting, &mut out),
+            Some((index, series)) => self.add_motor((at, v_new), (index, series), acting, &mut out),
+        }
+        for &index in &self.effects {
+            if let EffectKind::Joint(effect) = &acting.model.effects.list[index].kind {
+                let (effort, slope) = effect.eval((at, v_new), (q, v), acting.memory(index), acting.state.time);
+                out.effort += effort;
+                out.by_effects += effort;
+                out.slope += slope;
+            }
+        }
+        out
+    }
+
+    fn add_drives(&self, (at, q, v): (&CoordinatePoint, f64, f64), acting: &Acting<'_>, out: &mut CoordinateForce) {
         for &index in &self.actuators {
-            let (effort, slope) = drive(&actuators[index].kind, &commands[index], at, q, v);
+            let (effort, slope) = deliver(index, at, (q, v), acting);
             out.effort += effort;
             out.driven += effort;
             out.slope += slope;
         }
-        out
+        out.through = out.driven;
+    }
+
+    fn add_motor(
+        &self,
+        (at, v_new): (&CoordinatePoint, f64),
+        (index, series): (usize, &Series),
+        acting: &Acting<'_>,
+        out: &mut CoordinateForce,
+    ) {
+        let drive = |at: &CoordinatePoint, q: f64, v: f64| self.drive(at, (q, v), acting);
+        let motor = series.eval(at, v_new, (acting.memory(index), acting.step), drive);
+        out.effort += motor.effort;
+        out.slope += motor.slope;
+        (out.driven, out.through, out.motor_rate) = (motor.driven, motor.effort, Some(motor.rate));
+    }
+
+    /// What all its actuators deliver with the motor at q and v, and −∂/∂v'.
+    pub(crate) fn drive(&self, at: &CoordinatePoint, motor: (f64, f64), acting: &Acting<'_>) -> (f64, f64) {
+        let each = self.actuators.iter().map(|&index| deliver(index, at, motor, acting));
+        each.fold((0.0, 0.0), |sum, (effort, slope)| (sum.0 + effort, sum.1 + slope))
     }
 }
 
-fn drive(kind: &ActuatorKind, command: &Command, at: &CoordinatePoint, q: f64, v: f64) -> (f64, f64) {
+fn deliver(index: usize, at: &CoordinatePoint, motor: (f64, f64), acting: &Acting<'_>) -> (f64, f64) {
+    let lines = &acting.model.effects.lines;
+    let nominal = nominal_effort(&acting.model.actuators[index].kind, lines.command(index, acting.state), at, motor);
+    lines.deliver(index, nominal, acting)
+}
+
+/// Force of thruster `index` along its direction, N; zero for other actuators.
+pub(crate) fn calc_thrust(index: usize, acting: &Acting<'_>) -> f64 {
+    deliver(index, &CoordinatePoint::still(0.0, 0.0, acting.step), (0.0, 0.0), acting).0
+}
+
+impl Model {
+    /// Position and rate of the motor that drives a coordinate, where encoder and tachometer sit.
+    pub(crate) fn calc_motor_side(&self, state: &State, coordinate: usize) -> (f64, f64) {
+        let (q, v) = (state.q[self.coordinates[coordinate].q_index], state.v[coordinate]);
+        match self.coordinates[coordinate].series {
+            Some(index) => {
+                let memory = &state.effects[self.effects.memory(index)];
+                (q + memory[0], v + memory[1])
+            }
+            None => (q, v),
+        }
+    }
+}
+
+/// What an actuator gives for a command, and −∂/∂v'; a joint's with its motor at q and v.
+pub(crate) fn nominal_effort(
+    kind: &ActuatorKind,
+    command: &Command,
+    at: &CoordinatePoint,
+    (q, v): (f64, f64),
+) -> (f64, f64) {
     match *kind {
         ActuatorKind::JointEffort { limit, .. } => (command.effort.clamp(-limit, limit), 0.0),
         ActuatorKind::JointDrive { stiffness, damping, limit, .. } => {
@@ -216,6 +312,7 @@ fn drive(kind: &ActuatorKind, command: &Command, at: &CoordinatePoint, q: f64, v
             }
             (asked, stiffness * at.beta + damping * at.theta)
         }
-        ActuatorKind::Thruster { .. } | ActuatorKind::LatchRelease { .. } => (0.0, 0.0),
+        ActuatorKind::Thruster { max_force, .. } => (command.effort.clamp(0.0, max_force), 0.0),
+        ActuatorKind::LatchRelease { .. } => (0.0, 0.0),
     }
 }

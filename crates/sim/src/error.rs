@@ -34,6 +34,14 @@ pub enum ModelError {
         /// What is wrong with it.
         fault: String,
     },
+    /// An effect that cannot be.
+    #[error("effect \"{name}\": {fault}")]
+    Effect {
+        /// Its name and place.
+        name: String,
+        /// What is wrong with it.
+        fault: String,
+    },
     /// Contact geometry that cannot be.
     #[error(transparent)]
     Contact(#[from] contact::ContactError),

@@ -27,6 +27,7 @@
 mod account;
 mod actuator;
 mod contacts;
+mod effect;
 mod environment;
 mod error;
 mod mechanism;
@@ -44,6 +45,7 @@ mod world;
 
 pub use account::{Energy, MomentumAudit};
 pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
+pub use effect::{DryLevel, Effect, EffectKind, JointEffect, JointLaw, LineEffect, LineLaw, Series};
 pub use environment::Environment;
 pub use error::{ModelError, StepError};
 pub use mechanism::{
@@ -52,5 +54,5 @@ pub use mechanism::{
 };
 pub use model::{Base, Grain, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, Vehicle, VehicleSpec};
 pub use run::{Controller, Flow, NoControl, Observer};
-pub use state::{Account, ContactMemory, State, Work};
+pub use state::{Account, ContactMemory, Pending, State, Work};
 pub use world::{TouchReport, World};

@@ -4,6 +4,7 @@
 //! in W) the last. A `Model` never changes after [`Model::build`] and is shared by all threads.
 
 use crate::actuator::{Actuator, ActuatorKind, Coordinate};
+use crate::effect::{Effect, EffectKind, Effects, Series};
 use crate::environment::Environment;
 use crate::error::ModelError;
 use crate::mechanism::{Mechanism, MechanismKind};
@@ -95,6 +96,8 @@ pub struct Grain {
     pub on_b: bool,
     /// The direction, axes of the body (of W for the world).
     pub axis: Vec3,
+    /// Turn of the laid direction about the outward normal of the side it belongs to, rad.
+    pub angle: f64,
 }
 
 impl Grain {
@@ -102,7 +105,13 @@ impl Grain {
     pub(crate) fn calc_direction(&self, touch: &crate::contacts::Touch) -> Vec3 {
         let axis = if self.on_b { touch.rot_b } else { touch.rot_a } * self.axis;
         let laid = axis - touch.normal * touch.normal.dot(&axis);
-        laid.try_normalize(UPRIGHT * axis.norm()).unwrap_or_default()
+        let laid = laid.try_normalize(UPRIGHT * axis.norm()).unwrap_or_default();
+        if self.angle == 0.0 {
+            return laid;
+        }
+        let outward = if self.on_b { -touch.normal } else { touch.normal };
+        let (sin, cos) = self.angle.sin_cos();
+        laid * cos + outward.cross(&laid) * sin
     }
 }
 
@@ -162,6 +171,8 @@ pub struct ModelSpec {
     pub mechanisms: Vec<Mechanism>,
     /// Actuators in the order of the commands.
     pub actuators: Vec<Actuator>,
+    /// Physics beyond all that, in the order of their memory.
+    pub effects: Vec<Effect>,
     /// Gravity and tides.
     pub environment: Environment,
     /// How time advances.
@@ -198,6 +209,8 @@ pub struct Model {
     pub step: f64,
     /// What joins bodies beside joints and contact.
     pub mechanisms: Vec<Mechanism>,
+    /// Physics beyond all that.
+    pub(crate) effects: Effects,
     /// Global bodies and the frames in them, of the two sides of each mechanism.
     pub(crate) mechanism_sides: Vec<[(usize, Frame); 2]>,
     /// Bounding radius of each body's colliders about its origin, m; negative where it has none.
@@ -233,12 +246,32 @@ impl Model {
             integrator: spec.integrator,
             step: spec.step,
             mechanisms: spec.mechanisms,
+            effects: Effects::default(),
             mechanism_sides,
             collider_radius,
             one_sided_force: spec.one_sided_force,
         };
         model.attach_drives()?;
+        model.effects = Effects::build(spec.effects, &mut model)?;
         Ok(model)
+    }
+
+    /// The effects in their order.
+    pub fn effects(&self) -> &[Effect] {
+        &self.effects.list
+    }
+
+    /// Where the memory of an effect stands in [`crate::State::effects`].
+    pub fn effect_memory(&self, index: usize) -> std::ops::Range<usize> {
+        self.effects.memory(index)
+    }
+
+    /// The gear that an effect is.
+    pub(crate) fn series(&self, index: usize) -> Option<(usize, &Series)> {
+        match &self.effects.list[index].kind {
+            EffectKind::Series(series) => Some((index, series)),
+            _ => None,
+        }
     }
 
     fn attach_drives(&mut self) -> Result<(), ModelError> {

@@ -105,7 +105,7 @@ pub(crate) fn eval_explicit(model: &Model, ws: &mut Workspace, elapsed: f64) {
     find_pivots(model, ws);
     for i in 0..ws.pivots.len() {
         let mut pivot = ws.pivots[i];
-        (pivot.base, pivot.elapsed) = (pivot.start + elapsed * pivot.rate, model.step);
+        (pivot.base, pivot.elapsed) = (pivot.start + elapsed * pivot.rate, ws.step);
         pivot.eval(model, ws, &Vec3::zeros());
         pivot.moment = pivot.line;
         ws.pivots[i] = pivot;

@@ -1,6 +1,6 @@
 //! The classical fourth-order Runge–Kutta step.
 //!
-//!   y = (base position, rotation vector from the step's start, joint displacement, v, p, L, s)
+//!   y = (base position, rotation vector from the step's start, joint displacement, v, p, L, s, effects' memory)
 //!
 //! Every stage takes the base twist from its momentum, so every stage conserves, and so does the sum. Rotation vectors
 //! follow θ̇ = ω − ½ θ×ω + 1/12 θ×(θ×ω). Deflections are kept in the plane of the step's start. Those of the comparison laws
@@ -8,6 +8,7 @@
 
 use crate::actuator::CoordinatePoint;
 use crate::contacts::{Touch, Turned, find_memory, find_touches};
+use crate::effect::{self, Acting};
 use crate::mechanism;
 use crate::model::Model;
 use crate::pivots;
@@ -40,6 +41,7 @@ struct Rates {
     momentum: Vec<Wrench>,
     /// Per bristle slot, in the plane and the axes of the step's start.
     s: Vec<Vec3>,
+    effects: Vec<f64>,
     account: Account,
 }
 
@@ -54,6 +56,7 @@ impl Rates {
         zero(&mut self.xi, model.nv());
         zero(&mut self.v, model.nv());
         zero(&mut self.s, slots);
+        zero(&mut self.effects, model.effects.n_memory());
         self.account = Account::default();
     }
 
@@ -66,6 +69,7 @@ impl Rates {
         add(&mut self.xi, &other.xi, k);
         add(&mut self.v, &other.v, k);
         add(&mut self.s, &other.s, k);
+        add(&mut self.effects, &other.effects, k);
         self.account.add_scaled(&other.account, k);
     }
 }
@@ -84,11 +88,12 @@ const STAGES: [(f64, f64); 4] = [(0.0, 1.0 / 6.0), (0.5, 1.0 / 3.0), (0.5, 1.0 /
 
 /// Advances the world by one step; `ws` holds the kinematics of `state`.
 pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
-    let h = model.step;
+    let h = ws.step;
     begin(model, state, ws);
     let mut rk = std::mem::take(&mut ws.rk);
     rk.start.copy_from(state);
     for (index, (node, weight)) in STAGES.into_iter().enumerate() {
+        ws.since = Some(node * h);
         if index > 0 {
             let from = From { start: &rk.start, rate: &rk.rate, slots: &rk.slots };
             place(model, state, &mut ws.displacement, &from, node * h);
@@ -175,6 +180,7 @@ fn place(model: &Model, state: &mut State, displacement: &mut [f64], from: &From
         vehicle.tree.retract(&mut state.q[vehicle.q_range()], xi);
     }
     state.v.iter_mut().zip(&rate.v).for_each(|(v, r)| *v += r * k);
+    state.effects.iter_mut().zip(&rate.effects).for_each(|(x, r)| *x += r * k);
     state.bristles.clear();
     let moved = slots.iter().zip(&rate.s).map(|(slot, r)| ContactMemory { s_w: slot.s_w + r * k, ..*slot });
     state.bristles.extend(moved);
@@ -189,8 +195,8 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     pivots::eval_explicit(model, ws, state.time - rk.start.time);
     eval_coordinates(model, state, ws, rk);
     calc_external(model, state, ws);
-    // Bases move by their momentum; accelerations are those of joints alone.
-    if model.nv() > 0 {
+    // Bases move by their momentum: accelerations are for joints, and for effects that follow them.
+    if model.nv() > 0 || !model.effects.list.is_empty() {
         calc_bias(model, state, ws, false);
         if solve::factor(model, ws, 1.0) {
             solve::solve(model, ws, 1.0);
@@ -198,6 +204,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
             ws.v_gain.fill(f64::NAN);
         }
         rk.rate.v.copy_from_slice(&ws.v_gain);
+        effect::write_rates(model, state, ws, &mut rk.rate.effects);
         state.work.solves += 1;
     }
     state.work.rate_evaluations += 1;
@@ -222,13 +229,13 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
 }
 
 fn eval_contacts(model: &Model, ws: &mut Workspace, rk: &mut Stages) {
-    let Workspace { touches, frames, frames_start, .. } = ws;
+    let Workspace { touches, frames, frames_start, step, .. } = ws;
     // Back from the present frames to those of the step's start.
     let turns = (&Turned { from: frames_start, to: frames }, &Turned { from: frames, to: frames_start });
     for touch in touches {
         let slot = find_memory(&rk.slots, touch.pair, touch.feature);
         if let Some(slot) = slot {
-            let at = Stage { node: rk.node, step: model.step, slot: &rk.slots[slot], there: turns.0, back: turns.1 };
+            let at = Stage { node: rk.node, step: *step, slot: &rk.slots[slot], there: turns.0, back: turns.1 };
             rk4_bristle::bring(model, touch, &at, &mut rk.tracks[slot]);
         }
         let brush = eval_touch(model, touch);
@@ -276,9 +283,11 @@ fn eval_coordinates(model: &Model, state: &State, ws: &mut Workspace, rk: &Stage
             beta: 0.0,
             theta: 0.0,
             dry_start: rk.start.dry[i],
-            elapsed: model.step,
+            elapsed: ws.step,
+            from: ws.since.map(|since| (rk.start.v[i], since)),
         };
-        let force = coordinate.eval(&point, v, &model.actuators, &state.commands);
+        let force = coordinate.eval(&point, v, &Acting { model, state, step: ws.step, since: ws.since });
+        ws.coordinate_points[i] = point;
         ws.coordinate_forces[i] = force;
         ws.coordinate_lines[i] = (force.effort, 0.0);
     }

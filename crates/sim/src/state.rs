@@ -12,7 +12,7 @@ use spatial::{Pose, Vec3, Wrench};
 /// The world at one instant.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    /// Time, s: `steps` times the step.
+    /// Time, s: `steps` times the step, unless steps of other lengths were made.
     pub time: f64,
     /// Steps made since the start.
     pub steps: u64,
@@ -32,6 +32,18 @@ pub struct State {
     pub mechanisms: Vec<MechanismMemory>,
     /// Deflection of dry joint friction, by coordinate, rad or m.
     pub dry: Vec<f64>,
+    /// Memory of the effects, in the model's order; zero where all is at rest and unloaded.
+    #[serde(default)]
+    pub effects: Vec<f64>,
+    /// Whether the effects' memory knows the first commands: see [`crate::World::settle_effects`].
+    #[serde(default)]
+    pub is_settled: bool,
+    /// Commands that act on actuators with a delay; empty before the first step, and where no effect delays one.
+    #[serde(default)]
+    pub acting: Vec<crate::Command>,
+    /// Commands that were given and do not act yet.
+    #[serde(default)]
+    pub pending: Vec<Pending>,
     /// The controller's memory; its meaning is the controller's.
     pub controller: Vec<f64>,
     /// The commands that act at present.
@@ -40,6 +52,17 @@ pub struct State {
     pub account: Account,
     /// Work counters since the start.
     pub work: Work,
+}
+
+/// A command on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pending {
+    /// The actuator.
+    pub actuator: usize,
+    /// When it acts, s.
+    pub time: f64,
+    /// The command.
+    pub command: crate::Command,
 }
 
 /// The bristle of one touching point.
@@ -80,6 +103,9 @@ pub struct Account {
     /// What mechanisms have dissipated by their laws, J; with what a latch had stored when it let go.
     #[serde(default)]
     pub mechanism_loss: f64,
+    /// Work of effects on joints, J (negative: stored or dissipated); that on bodies is with the external work.
+    #[serde(default)]
+    pub effect_work: f64,
 }
 
 /// Work counters: they show numeric drift without a clock.
@@ -110,6 +136,10 @@ impl State {
             bristles: Vec::new(),
             mechanisms: model.mechanisms.iter().map(|m| m.kind.start()).collect(),
             dry: vec![0.0; model.nv()],
+            effects: vec![0.0; model.effects.n_memory()],
+            is_settled: false,
+            acting: Vec::new(),
+            pending: Vec::new(),
             controller: Vec::new(),
             commands: vec![crate::Command::default(); model.actuators.len()],
             account: Account::default(),
@@ -123,6 +153,7 @@ impl State {
         self.q.clone_from(&other.q);
         self.v.clone_from(&other.v);
         self.momentum.clone_from(&other.momentum);
+        self.effects.clone_from(&other.effects);
     }
 
     /// Copies `other` into this one without allocating where sizes match.
@@ -135,6 +166,10 @@ impl State {
         self.bristles.clone_from(&other.bristles);
         self.mechanisms.clone_from(&other.mechanisms);
         self.dry.clone_from(&other.dry);
+        self.effects.clone_from(&other.effects);
+        self.is_settled = other.is_settled;
+        self.acting.clone_from(&other.acting);
+        self.pending.clone_from(&other.pending);
         self.controller.clone_from(&other.controller);
         self.commands.clone_from(&other.commands);
         (self.account, self.work) = (other.account, other.work);
@@ -151,5 +186,6 @@ impl Account {
         self.contact_work += other.contact_work * k;
         self.mechanism_work += other.mechanism_work * k;
         self.mechanism_loss += other.mechanism_loss * k;
+        self.effect_work += other.effect_work * k;
     }
 }

@@ -10,8 +10,9 @@
 //!
 //! Derivation, costs and the traps: crate documentation.
 
-use crate::actuator::{ActuatorKind, CoordinatePoint};
+use crate::actuator::{ActuatorKind, CoordinatePoint, calc_thrust};
 use crate::contacts::{Outcome, Place, Touch, commit_bristles, find_touches};
+use crate::effect::{self, Acting};
 use crate::mechanism;
 use crate::model::{Base, Model};
 use crate::pivots;
@@ -40,7 +41,8 @@ const RESOLVED: f64 = 0.1;
 
 /// Advances the world by one step; `ws` holds the kinematics of `state`.
 pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
-    let h = model.step;
+    let h = ws.step;
+    ws.since = None;
     begin(model, state, ws);
     if scheme == Scheme::ImplicitMidpoint {
         drift_to_midpoint(model, state, ws, 0.5 * h);
@@ -53,6 +55,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     pivots::find_pivots(model, ws);
     place_laws(model, state, ws, scheme);
     solve_laws(model, state, ws, scheme);
+    effect::advance(model, state, ws, scheme);
     add_impulses(model, state, ws, h);
     match scheme {
         Scheme::ImplicitMidpoint => drift_from_midpoint(model, state, ws, 0.5 * h),
@@ -79,7 +82,7 @@ fn place_centres(model: &Model, state: &mut State, ws: &mut Workspace, scheme: S
         };
         let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
         let kin = &mut ws.kin[i];
-        let off = ws.centre_start[i] + mean * (model.step / mass) - (kin.anchor + first_moment / mass);
+        let off = ws.centre_start[i] + mean * (ws.step / mass) - (kin.anchor + first_moment / mass);
         let mask = vehicle.base.mask();
         let shift = Vec3::from_fn(|k, _| if mask[3 + k] { off[k] } else { 0.0 });
         state.bases[i].translation.vector += shift;
@@ -113,10 +116,10 @@ pub(crate) fn finish(model: &Model, state: &mut State, ws: &mut Workspace) {
     ws.update_velocities(model, state);
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| c.dry.is_some()) {
         let moved = state.q[coordinate.q_index] - ws.q_start[coordinate.q_index];
-        state.dry[i] = coordinate.advance_dry(state.dry[i], moved, model.step);
+        state.dry[i] = coordinate.advance_dry(state.dry[i], moved, ws.step);
     }
-    state.steps += 1;
-    state.time = state.steps as f64 * model.step;
+    effect::commit(model, state, ws);
+    state.time = ws.end;
     state.work.steps += 1;
     state.work.contact_queries += ws.detector.narrow_count() - ws.queries_start;
 }
@@ -127,15 +130,17 @@ pub(crate) fn calc_external(model: &Model, state: &State, ws: &mut Workspace) {
         let kin = &ws.kin[vehicle];
         ws.external[body] = model.environment.calc_wrench(state.time, &kin.anchor, &kin.inertia[local]);
     }
-    for (actuator, command) in model.actuators.iter().zip(&state.commands) {
-        if let ActuatorKind::Thruster { body, position, direction, max_force } = actuator.kind {
+    let acting = Acting { model, state, step: ws.step, since: ws.since };
+    for (index, actuator) in model.actuators.iter().enumerate() {
+        if let ActuatorKind::Thruster { body, position, direction, .. } = actuator.kind {
             let (vehicle, local) = model.owners[body];
             let kin = &ws.kin[vehicle];
             let r = kin.pos[local] + kin.rot[local] * position;
-            let force = kin.rot[local] * (command.effort.clamp(0.0, max_force) * direction);
+            let force = kin.rot[local] * (calc_thrust(index, &acting) * direction);
             ws.external[body] += Wrench::from_force_at(force, &r);
         }
     }
+    effect::add_wrenches(model, state, ws);
 }
 
 /// What motion takes beyond the external forces, at zero acceleration: with the start's velocities, or with those half
@@ -155,10 +160,10 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
 
 /// Decides for every touch and coordinate where its law is evaluated, and draws the first lines at zero gain.
 fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) {
-    let h = model.step;
+    let h = ws.step;
     mechanism::place(model, ws, scheme);
     for i in 0..ws.touches.len() {
-        let is_stiff = scheme == Scheme::ImplicitMidpoint && is_stiff(model, &ws.touches, i);
+        let is_stiff = scheme == Scheme::ImplicitMidpoint && is_stiff(model, ws, i);
         let touch = &mut ws.touches[i];
         touch.place = place_of(scheme, touch, h);
         let law = &model.laws[touch.pair as usize];
@@ -181,8 +186,9 @@ fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) 
             Scheme::ImplicitMidpoint => (0.25 * h, 0.5, q - 0.25 * h * v, 0.25 * h * v, 0.5 * h),
             Scheme::SemiImplicitEuler => (0.0, 0.0, q, h * v, h),
         };
-        let point = CoordinatePoint { q_base, moved_base, v_start: v, beta, theta, dry_start: state.dry[i], elapsed };
-        let force = coordinate.eval(&point, v, &model.actuators, &state.commands);
+        let dry_start = state.dry[i];
+        let point = CoordinatePoint { q_base, moved_base, v_start: v, beta, theta, dry_start, elapsed, from: None };
+        let force = coordinate.eval(&point, v, &Acting { model, state, step: h, since: None });
         ws.coordinate_points[i] = point;
         ws.coordinate_forces[i] = force;
         ws.coordinate_lines[i] = (force.effort, force.slope);
@@ -210,7 +216,8 @@ fn place_of(scheme: Scheme, touch: &Touch, h: f64) -> Place {
 /// Whether a contact oscillates too fast for the midpoint rule to resolve it: (h ω)² > 0.1 with ω² = n k/m, n the points
 /// of its pair, m the lighter body's mass (the effective mass is smaller off the centre of mass; this one is cheap and
 /// safe enough, since both forms converge).
-fn is_stiff(model: &Model, touches: &[Touch], index: usize) -> bool {
+fn is_stiff(model: &Model, ws: &Workspace, index: usize) -> bool {
+    let touches = &ws.touches;
     let mass = |body: usize| {
         model.owners.get(body).map_or(f64::INFINITY, |&(v, b)| model.vehicles[v].tree.bodies[b].inertia.mass)
     };
@@ -220,12 +227,12 @@ fn is_stiff(model: &Model, touches: &[Touch], index: usize) -> bool {
     let normal = law.normal.eval(touch.gap.min(-1e-5), 0.0);
     let stiffness = (-normal.d_gap).max(law.friction.map_or(0.0, |f| f.spring().0));
     let sharing = touches.iter().filter(|t| t.pair == touch.pair).count() as f64;
-    model.step * model.step * sharing * stiffness > RESOLVED * lighter
+    ws.step * ws.step * sharing * stiffness > RESOLVED * lighter
 }
 
 /// Solves, checks the laws at the solution, and draws new lines where they missed.
 fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
-    let h = model.step;
+    let h = ws.step;
     let mut must_factor = true;
     let mut converged = false;
     for pass in 0..MAX_SOLVES {
@@ -241,7 +248,7 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
         must_factor = !converged;
         if first_midpoint_pass {
             recalc_bias_at_midpoint(model, state, ws);
-            must_factor |= !ws.touches.is_empty() || !ws.couplings.is_empty();
+            must_factor |= !ws.touches.is_empty() || !ws.couplings.is_empty() || !model.effects.list.is_empty();
         }
         if converged && !first_midpoint_pass {
             break;
@@ -254,7 +261,7 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
 fn recalc_bias_at_midpoint(model: &Model, state: &State, ws: &mut Workspace) {
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let base = ws.base_start[i];
-        let gain = classical_gain(&ws.base_gain[i], &base, model.step);
+        let gain = classical_gain(&ws.base_gain[i], &base, ws.step);
         for k in vehicle.v_range() {
             ws.v_mid[k] = state.v[k] + 0.5 * ws.v_gain[k];
         }
@@ -263,9 +270,9 @@ fn recalc_bias_at_midpoint(model: &Model, state: &State, ws: &mut Workspace) {
     }
     calc_bias(model, state, ws, true);
     for i in 0..ws.touches.len() {
-        let carried = crate::contacts::calc_carried(model, ws, &ws.touches[i]) * model.step;
+        let carried = crate::contacts::calc_carried(model, ws, &ws.touches[i]) * ws.step;
         let touch = &mut ws.touches[i];
-        touch.out.line -= touch.out.g * (carried - touch.carried) / model.step;
+        touch.out.line -= touch.out.g * (carried - touch.carried) / ws.step;
         touch.carried = carried;
     }
     mechanism::update_carried(model, ws);
@@ -303,7 +310,7 @@ fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
         let (effort, slope) = ws.coordinate_lines[i];
         let v_new = state.v[i] + ws.v_gain[i];
         let on_line = effort - slope * ws.v_gain[i];
-        let law = coordinate.eval(&ws.coordinate_points[i], v_new, &model.actuators, &state.commands);
+        let law = coordinate.eval(&ws.coordinate_points[i], v_new, &Acting { model, state, step: h, since: None });
         joints_hold &= (law.effort - on_line).abs() <= LAW_TOLERANCE * law.effort.abs() + FORCE_FLOOR;
         ws.coordinate_forces[i] = crate::actuator::CoordinateForce { effort: on_line, ..law };
         ws.coordinate_lines[i] = (law.effort + law.slope * ws.v_gain[i], law.slope);
@@ -363,8 +370,11 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
     for (i, _) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
         let force = &ws.coordinate_forces[i];
         let moved = h * (state.v[i] + 0.5 * ws.v_gain[i]);
-        state.account.actuator_work += force.driven * moved;
-        state.account.passive_joint_work += (force.effort - force.driven) * moved;
+        let motor_moved = force.motor_rate.map_or(moved, |rate| h * rate);
+        let by_effects = (force.by_effects + force.through) * moved - force.driven * motor_moved;
+        state.account.actuator_work += force.driven * motor_moved;
+        state.account.passive_joint_work += (force.effort - force.through - force.by_effects) * moved;
+        state.account.effect_work += by_effects;
     }
     for (body, &(vehicle, local)) in model.owners.iter().enumerate() {
         let external = ws.external[body];

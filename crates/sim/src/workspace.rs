@@ -11,6 +11,11 @@ use spatial::{Frame, SpatialMatrix, Twist, Vec3, Wrench, nalgebra};
 /// Scratch of one world; holds nothing that a result depends on.
 #[derive(Debug)]
 pub(crate) struct Workspace {
+    /// Length of the present step, s, and the time at its end, s.
+    pub step: f64,
+    pub end: f64,
+    /// Time since the step's start of an explicit stage, s.
+    pub since: Option<f64>,
     pub kin: Vec<Kinematics>,
     pub dynamics: Vec<Dynamics>,
     /// Frames of all bodies in W; the world's is the last.
@@ -54,16 +59,11 @@ pub(crate) struct Workspace {
 impl Workspace {
     pub fn new(model: &Model) -> Self {
         let (bodies, nv) = (model.owners.len() + 1, model.nv());
-        let point = CoordinatePoint {
-            q_base: 0.0,
-            moved_base: 0.0,
-            v_start: 0.0,
-            beta: 0.0,
-            theta: 0.0,
-            dry_start: 0.0,
-            elapsed: 1.0,
-        };
+        let point = CoordinatePoint::still(0.0, 0.0, 1.0);
         Self {
+            step: model.step,
+            end: 0.0,
+            since: None,
             kin: model.vehicles.iter().map(|v| Kinematics::new(&v.tree)).collect(),
             dynamics: model.vehicles.iter().map(|v| Dynamics::new(&v.tree)).collect(),
             frames: vec![Frame::identity(); bodies],

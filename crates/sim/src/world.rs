@@ -1,5 +1,6 @@
 //! A model and its state, advancing.
 
+use crate::effect;
 use crate::error::StepError;
 use crate::mechanism::{self, MechanismKind, MechanismMemory, MechanismReport};
 use crate::model::{Integrator, Model};
@@ -57,6 +58,8 @@ impl World {
         // A state from before a model had mechanisms knows nothing of them: they begin as at the start.
         let known = state.mechanisms.len();
         state.mechanisms.extend(model.mechanisms.iter().skip(known).map(|m| m.kind.start()));
+        // Likewise of effects.
+        state.effects.resize(model.effects.n_memory(), 0.0);
         let ws = Workspace::new(&model);
         let mut world = Self { model, state, ws, is_fresh: false };
         world.refresh();
@@ -110,10 +113,79 @@ impl World {
         self.refresh();
     }
 
-    /// Advances by one step.
+    /// Advances by one step of the model.
     pub fn advance(&mut self) -> Result<(), StepError> {
+        self.advance_by(self.model.step)
+    }
+
+    /// Advances by one step of `h` s; nothing happens unless `h` is above zero.
+    ///
+    /// Where a delayed command begins to act on the way, the step is made in two; see [`World::next_switch`].
+    pub fn advance_by(&mut self, h: f64) -> Result<(), StepError> {
+        if h.is_nan() || h <= 0.0 {
+            return Ok(());
+        }
         self.refresh();
         self.ws.backup.copy_from(&self.state);
+        let (step, start) = (self.model.step, self.state.time);
+        let is_regular = h == step && start == self.state.steps as f64 * step;
+        let end = if is_regular { (self.state.steps + 1) as f64 * step } else { start + h };
+        let mut left = h;
+        loop {
+            effect::accept(&self.model, &mut self.state);
+            self.settle_effects();
+            let part = match effect::next_switch(&self.state).map(|t| t - self.state.time) {
+                Some(part) if part < left => part,
+                _ => left,
+            };
+            let is_last = part >= left;
+            self.ws.step = part;
+            self.ws.end = if is_last { end } else { self.state.time + part };
+            self.make_step()?;
+            left -= part;
+            if is_last {
+                self.state.steps += 1;
+                return Ok(());
+            }
+        }
+    }
+
+    /// When the next command that an effect delays begins to act, s; none where none is on its way.
+    pub fn next_switch(&self) -> Option<f64> {
+        effect::next_switch(&self.state)
+    }
+
+    /// Tells what was commanded before the present time, in order of time: commands that an effect delays act from now on
+    /// as if the world had run through them. The present commands are left as they are.
+    pub fn recall_commands<'a>(&mut self, past: impl IntoIterator<Item = (f64, &'a [Command])>) {
+        let (now, present) = (self.state.time, self.state.commands.clone());
+        self.state.acting.clear();
+        self.state.pending.clear();
+        for (time, commands) in past {
+            self.state.time = time;
+            self.state.commands.copy_from_slice(commands);
+            effect::accept(&self.model, &mut self.state);
+        }
+        (self.state.time, self.state.commands) = (now, present);
+    }
+
+    /// Sets the effects' memory that depends on commands to rest under the present ones: a gear that yields carries the
+    /// drive's effort, a lag has passed. The first step does it by itself; a caller who wants to start from other memory
+    /// calls this before and changes [`State::effects`] then.
+    pub fn settle_effects(&mut self) {
+        if !self.state.is_settled {
+            effect::settle(&self.model, &mut self.state);
+            self.state.is_settled = true;
+        }
+    }
+
+    /// What encoder and tachometer of a coordinate read without fault, rad and rad/s, or m and m/s: the motor side where
+    /// a gear yields, else the joint itself.
+    pub fn motor_side(&self, coordinate: usize) -> (f64, f64) {
+        self.model.calc_motor_side(&self.state, coordinate)
+    }
+
+    fn make_step(&mut self) -> Result<(), StepError> {
         let (model, state, ws) = (&*self.model, &mut self.state, &mut self.ws);
         match model.integrator {
             Integrator::ImplicitEuler => step::step(model, state, ws, Scheme::ImplicitEuler),

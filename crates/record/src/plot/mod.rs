@@ -3,7 +3,10 @@
 //! One panel per set of axes ([`crate::Axes`]): time across, one line per channel, a legend with each channel's last value,
 //! and a dashed line at every event; the events in words at the end. Lines are thinned to what the panel's width can show: least and largest value per pixel.
 
+mod axis;
 mod scale;
+
+pub use axis::{Axis, equalise, escape};
 
 use crate::{Axes, Log, Plot};
 use scale::{Scale, shown};
@@ -166,10 +169,6 @@ fn add_legend(svg: &mut String, k: usize, label: &str, last: Option<f64>) {
         x + 17.0,
         escape(label)
     );
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

@@ -42,10 +42,37 @@ pub(super) fn resolve(scenario: &Scenario, vehicles: &mut [VehicleSpec], faults:
     let all = scenario.mechanisms.iter().enumerate();
     let latches: Vec<_> = all.filter(|(_, m)| is_latch(m)).map(|(k, m)| (k, m.name.as_str())).collect();
     let mut table = ActuatorTable::default();
+    let mut armatures = Vec::new();
     for (i, actuator) in scenario.actuators.iter().enumerate() {
-        add(&mut table, actuator, &Site { i, vehicles, rotor: rotors[i], latches: &latches }, faults);
+        let site = Site { i, vehicles, rotor: rotors[i], latches: &latches };
+        add(&mut table, actuator, &site, faults);
+        armatures.extend(reflected(actuator, &site, faults));
+    }
+    for (v, j, inertia) in armatures {
+        vehicles[v].tree.joints[j].armature += inertia;
     }
     table
+}
+
+/// Vehicle, joint and inertia of the rotors that an actuator's drives reflect to their joints.
+fn reflected(actuator: &spec::Actuator, site: &Site<'_>, faults: &mut Faults<'_>) -> Vec<(usize, usize, f64)> {
+    let Some((inertia, is_linear)) = actuator.kind.reflected_inertia() else { return Vec::new() };
+    let mut found = Vec::new();
+    for pattern in actuator.kind.joint_patterns() {
+        // A pattern that names no joint has been told already.
+        for (v, joint) in joints_of(site, pattern, "", &mut Faults::silent(faults)) {
+            if is_linear != (joint.kind == JointKind::Prismatic) {
+                let key = format!("actuator[{}]", site.i);
+                faults.add(
+                    &key,
+                    "give reflected_mass_kg for a joint that slides, reflected_inertia_kg_m2 for one that turns",
+                );
+            }
+            let index = site.vehicles[v].tree.joints.iter().position(|j| j.name == joint.name);
+            found.extend(index.map(|j| (v, j, inertia)));
+        }
+    }
+    found
 }
 
 /// Where an actuator is being built.
@@ -73,7 +100,7 @@ fn add(table: &mut ActuatorTable, actuator: &spec::Actuator, site: &Site<'_>, fa
     let key = |k: &str| format!("actuator[{}].{k}", site.i);
     let mut push = |name: String, kind| table.actuators.push(Actuator { name, kind });
     match &actuator.kind {
-        spec::ActuatorKind::JointTorque { joint, limit_n_m, limit_n } => {
+        spec::ActuatorKind::JointTorque { joint, limit_n_m, limit_n, .. } => {
             for (v, joint) in joints_of(site, joint, &key("joint"), faults) {
                 let limit = limit_n_m.or(*limit_n).unwrap_or(joint.effort_limit);
                 let coordinate = site.coordinate(v, joint);

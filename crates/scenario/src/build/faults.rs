@@ -17,6 +17,11 @@ impl<'a> Faults<'a> {
         Self { scenario, errors: Vec::new() }
     }
 
+    /// Faults of the same scenario that nobody will be told.
+    pub(crate) fn silent(of: &Self) -> Self {
+        Self::new(of.scenario)
+    }
+
     /// Something at the path of a key (`vehicle[0].urdf`, empty for the whole file) cannot be built.
     pub(crate) fn add(&mut self, key: &str, reason: impl Into<String>) {
         let problem = Problem::Unbuildable { key: key.to_owned(), reason: reason.into() };

@@ -5,6 +5,7 @@
 mod actuators;
 mod beds;
 mod docking;
+mod effects;
 mod faults;
 mod kinematics;
 mod laws;
@@ -52,22 +53,28 @@ impl std::fmt::Debug for Mission {
 /// Builds the world and the plan of a scenario.
 pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
     let mut faults = Faults::new(scenario);
-    let Some(vehicles) = vehicles::load(scenario, &mut faults) else { return Err(faults.into_errors()) };
+    let plan = effects::check(scenario, &mut faults);
+    let Some(vehicles) = vehicles::load(scenario, &plan, &mut faults) else { return Err(faults.into_errors()) };
     let (robots, mut specs) = vehicles;
     let table = actuators::resolve(scenario, &mut specs, &mut faults);
     let (shapes, pairs) = shapes::resolve(scenario, &robots, &specs, &mut faults);
     let mechanisms = mechanisms::resolve(scenario, &specs, &mut faults);
+    let environment = environment(&scenario.environment);
+    let mut parts =
+        effects::Parts { vehicles: specs, table, shapes, pairs, mechanisms, environment, effects: Vec::new() };
+    effects::apply(&plan, &mut parts, &mut faults);
     refuse_what_is_not_simulated(scenario, &mut faults);
     if !faults.is_empty() {
         return Err(faults.into_errors());
     }
     let spec = ModelSpec {
-        vehicles: specs,
-        shapes,
-        pairs,
-        mechanisms,
-        actuators: table.actuators.clone(),
-        environment: environment(&scenario.environment),
+        vehicles: parts.vehicles,
+        shapes: parts.shapes,
+        pairs: parts.pairs,
+        mechanisms: parts.mechanisms,
+        actuators: parts.table.actuators.clone(),
+        effects: parts.effects,
+        environment: parts.environment,
         integrator: integrator(scenario.integrator.kind),
         step: scenario.integrator.step_s,
         one_sided_force: Vec3::zeros(),
@@ -79,7 +86,7 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
             return Err(faults.into_errors());
         }
     };
-    finish(scenario, robots, &model, &table, faults)
+    finish(scenario, robots, &model, &parts.table, faults)
 }
 
 fn finish(
@@ -112,9 +119,6 @@ fn samples(scenario: &Scenario) -> u64 {
 fn refuse_what_is_not_simulated(scenario: &Scenario, faults: &mut Faults<'_>) {
     let later =
         |what: &str| format!("{what} are read and checked, but not simulated in this version; remove the entry");
-    if !scenario.effects.is_empty() {
-        faults.add("effect[0]", later("effects"));
-    }
     if !scenario.drives.is_empty() {
         faults.add("drive[0]", later("prescribed motions"));
     }

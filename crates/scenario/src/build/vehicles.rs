@@ -1,5 +1,6 @@
 //! URDF files → trees and bases.
 
+use super::effects::{self, Entry};
 use super::faults::Faults;
 use crate::spec::{BaseAxis, Environment, Scenario, Vehicle};
 use multibody::{RobotDescription, SearchPaths, Tree, load_urdf};
@@ -7,7 +8,11 @@ use sim::VehicleSpec;
 use spatial::Vec3;
 
 /// Loads every vehicle's robot; `None` if one cannot be had, since nothing else can be checked then.
-pub(super) fn load(scenario: &Scenario, faults: &mut Faults<'_>) -> Option<(Vec<RobotDescription>, Vec<VehicleSpec>)> {
+pub(super) fn load(
+    scenario: &Scenario,
+    plan: &[Entry<'_>],
+    faults: &mut Faults<'_>,
+) -> Option<(Vec<RobotDescription>, Vec<VehicleSpec>)> {
     let dir = scenario.source.file_dir();
     let mut loaded = Vec::with_capacity(scenario.vehicles.len());
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
@@ -20,13 +25,16 @@ pub(super) fn load(scenario: &Scenario, faults: &mut Faults<'_>) -> Option<(Vec<
     if loaded.len() < scenario.vehicles.len() {
         return None;
     }
-    let specs = |(vehicle, (robot, base)): (&Vehicle, &(RobotDescription, sim::Base))| VehicleSpec {
+    let (mut robots, bases): (Vec<_>, Vec<_>) = loaded.into_iter().unzip();
+    let names: Vec<&str> = scenario.vehicles.iter().map(|v| v.name.as_str()).collect();
+    effects::edit_robots(plan, (&names, &mut robots), faults);
+    let spec = |(vehicle, (robot, base)): (&Vehicle, (&RobotDescription, sim::Base))| VehicleSpec {
         name: vehicle.name.clone(),
         tree: Tree::from_description(robot),
-        base: *base,
+        base,
     };
-    let specs = scenario.vehicles.iter().zip(&loaded).map(specs).collect();
-    Some((loaded.into_iter().map(|(robot, _)| robot).collect(), specs))
+    let specs = scenario.vehicles.iter().zip(robots.iter().zip(bases)).map(spec).collect();
+    Some((robots, specs))
 }
 
 fn base(scenario: &Scenario, i: usize, vehicle: &Vehicle, faults: &mut Faults<'_>) -> sim::Base {

@@ -106,9 +106,11 @@ fn place(names: &Names<'_>, text: &str, path: &str) -> Option<Problem> {
         return Some(Problem::OutOfRange { key, found, demand });
     }
     match (kind, rest.split_once('/')) {
+        ("actuator", _) if is_glob(rest) => None,
         ("actuator", _) => actuator(names, rest, path),
-        ("sensor", _) => known(&names.sensors, "sensor", rest, path),
-        ("joint" | "link" | "body", Some((vehicle, _))) => known(&names.vehicles, "vehicle", vehicle, path),
+        ("joint" | "link" | "body", Some((vehicle, _))) if !is_glob(vehicle) => {
+            known(&names.vehicles, "vehicle", vehicle, path)
+        }
         _ => None,
     }
 }

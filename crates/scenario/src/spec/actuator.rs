@@ -21,7 +21,7 @@ pub struct Actuator {
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ActuatorKind {
     /// The command is the joint's torque, N·m, or force, N.
-    #[schemars(extend("x-at-most-one" = [["limit_n_m", "limit_n"]]))]
+    #[schemars(extend("x-at-most-one" = [["limit_n_m", "limit_n"], ["reflected_inertia_kg_m2", "reflected_mass_kg"]]))]
     JointTorque {
         /// The joint, as `vehicle/joint`.
         #[schemars(extend("x-refers" = "vehicle/part"))]
@@ -34,6 +34,14 @@ pub enum ActuatorKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(extend("exclusiveMinimum" = 0.0))]
         limit_n: Option<f64>,
+        /// Rotor inertia as the joint feels it, kg·m²; gyroscopic terms neglected, no part of the vehicle's momentum.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0))]
+        reflected_inertia_kg_m2: Option<f64>,
+        /// The same of a prismatic joint, kg.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0))]
+        reflected_mass_kg: Option<f64>,
     },
     /// A position and rate loop: τ = k (q_cmd − q) + d (q̇_cmd − q̇), within the limit.
     JointDrive(JointDrive),
@@ -85,7 +93,8 @@ pub enum ActuatorKind {
 #[serde(default, deny_unknown_fields)]
 #[schemars(extend(
     "x-exactly-one" = [["joint", "joints"], ["stiffness_n_m_per_rad", "stiffness_n_per_m"]],
-    "x-at-most-one" = [["damping_n_m_s_per_rad", "damping_n_s_per_m"], ["limit_n_m", "limit_n"]],
+    "x-at-most-one" = [["damping_n_m_s_per_rad", "damping_n_s_per_m"], ["limit_n_m", "limit_n"],
+        ["reflected_inertia_kg_m2", "reflected_mass_kg"]],
 ))]
 pub struct JointDrive {
     /// The joint, as `vehicle/joint`.
@@ -120,6 +129,14 @@ pub struct JointDrive {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub limit_n: Option<f64>,
+    /// Rotor inertia as each joint feels it, kg·m²; gyroscopic terms neglected, no part of the vehicle's momentum.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub reflected_inertia_kg_m2: Option<f64>,
+    /// The same of prismatic joints, kg.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub reflected_mass_kg: Option<f64>,
 }
 
 impl JointDrive {
@@ -155,6 +172,28 @@ pub(super) fn unit(direction: &[f64; 3]) -> Vec3 {
 }
 
 impl ActuatorKind {
+    /// The joints or patterns that it drives.
+    pub fn joint_patterns(&self) -> impl Iterator<Item = &str> {
+        let (own, many) = match self {
+            Self::JointTorque { joint, .. } => (Some(joint), None),
+            Self::JointDrive(drive) => (None, Some(drive)),
+            Self::Thruster { .. } | Self::ReactionWheel { .. } | Self::LatchRelease { .. } => (None, None),
+        };
+        own.map(String::as_str).into_iter().chain(many.into_iter().flat_map(JointDrive::joint_patterns))
+    }
+
+    /// Rotor inertia (kg·m²) or mass (kg) as its joints feel it, and whether it is a mass.
+    pub fn reflected_inertia(&self) -> Option<(f64, bool)> {
+        let (inertia, mass) = match self {
+            Self::JointTorque { reflected_inertia_kg_m2, reflected_mass_kg, .. } => {
+                (*reflected_inertia_kg_m2, *reflected_mass_kg)
+            }
+            Self::JointDrive(drive) => (drive.reflected_inertia_kg_m2, drive.reflected_mass_kg),
+            Self::Thruster { .. } | Self::ReactionWheel { .. } | Self::LatchRelease { .. } => (None, None),
+        };
+        inertia.map(|i| (i, false)).or(mass.map(|m| (m, true)))
+    }
+
     /// Unit vector of a thruster's force or a wheel's axis, in link axes.
     pub fn axis(&self) -> Option<Vec3> {
         match self {

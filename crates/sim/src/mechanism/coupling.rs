@@ -122,7 +122,7 @@ impl Coupling {
                 if at_end { (kin.vel[local], self.origins[k] - kin.anchor) } else { (kin.vel[0], Vec3::zeros()) };
             twist.ang.cross(&twist.at(&arm))
         });
-        self.at.rows.map(|row| model.step * row.force.dot(&(b - a)))
+        self.at.rows.map(|row| ws.step * row.force.dot(&(b - a)))
     }
 
     /// Evaluates the laws at the gains, and draws the lines for the next solve.
@@ -161,7 +161,7 @@ impl Coupling {
 
     /// Whether a coordinate moves too fast for the midpoint rule: h² k/m or h c/m, with the two bodies as if free.
     fn is_stiff(&self, model: &Model, ws: &Workspace) -> bool {
-        let (h, kind) = (model.step, &model.mechanisms[self.index].kind);
+        let (h, kind) = (ws.step, &model.mechanisms[self.index].kind);
         (0..self.at.n).any(|i| {
             let mobility: f64 = (0..2).map(|k| calc_mobility(model, ws, self.bodies[k], &self.rows[k][i])).sum();
             let stiffness = kind.calc_stiffness_within(i, self.at.e[i], 2.0 * h * self.rate[i].abs());
@@ -181,7 +181,7 @@ fn calc_mobility(model: &Model, ws: &Workspace, body: usize, row: &Wrench) -> f6
 
 /// Decides where the laws are evaluated, and draws the first lines.
 pub(crate) fn place(model: &Model, ws: &mut Workspace, scheme: Scheme) {
-    let h = model.step;
+    let h = ws.step;
     for k in 0..ws.couplings.len() {
         let mut coupling = ws.couplings[k];
         coupling.carried = coupling.calc_carried(model, ws, scheme != Scheme::ImplicitMidpoint);
@@ -337,7 +337,7 @@ pub(crate) fn commit(model: &Model, state: &mut State, ws: &Workspace) {
             matches!(a.kind, ActuatorKind::LatchRelease { mechanism } if mechanism == index) && c.effort > 0.5
         });
         let load = [report.wrench_w.force.norm(), report.wrench_w.moment.norm()];
-        let now = Moment { sides: &sides, time: state.time, step: model.step, commanded, load };
+        let now = Moment { sides: &sides, time: state.time, step: ws.step, commanded, load };
         let next = mechanism.kind.advance(&now, memory);
         if next.status != memory.status {
             state.account.mechanism_loss += report.stored;

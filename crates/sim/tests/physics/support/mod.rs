@@ -1,5 +1,6 @@
 //! Small worlds for the tests.
 
+pub(crate) mod effects;
 pub(crate) mod elliptic;
 pub(crate) mod mechanisms;
 pub(crate) mod scenes;
@@ -112,6 +113,7 @@ pub(crate) fn spec(vehicles: Vec<(Tree, Base)>, setup: &Setup) -> ModelSpec {
         pairs: Vec::new(),
         mechanisms: Vec::new(),
         actuators: Vec::new(),
+        effects: Vec::new(),
         environment: setup.environment,
         integrator: setup.integrator,
         step: setup.step,

@@ -1,0 +1,194 @@
+//! Effects on bodies, and on all of them.
+
+use super::{along, hypothesis, log_grid};
+use crate::facts::{BodyFact, Facts};
+use crate::hypothesis::{Column, Coordinate, Encoding, Hypothesis, ScreenPoint};
+use scenario::spec::ParamValue;
+use spatial::Vec3;
+
+const COM: [&str; 3] = ["com[0]", "com[1]", "com[2]"];
+const VECTOR: [&str; 3] = ["vector[0]", "vector[1]", "vector[2]"];
+const POSITION: [&str; 3] = ["position[0]", "position[1]", "position[2]"];
+const COUPLING: [&str; 3] = ["coupling[0]", "coupling[1]", "coupling[2]"];
+const AMPLITUDE: [&str; 3] = ["amplitude[0]", "amplitude[1]", "amplitude[2]"];
+const INERTIA: [&str; 6] = ["inertia[0]", "inertia[1]", "inertia[2]", "inertia[3]", "inertia[4]", "inertia[5]"];
+
+pub(super) fn add(body: &BodyFact, facts: &Facts, all: &mut Vec<Hypothesis>) {
+    let place = format!("body:{}", body.name);
+    let place = place.as_str();
+    add_inertial(body, place, all);
+    if !body.is_base {
+        return;
+    }
+    let (turns, slides) = (body.mask[..3].iter().any(|m| *m), body.mask[3..].iter().any(|m| *m));
+    if slides {
+        add_constant("constant-force", place, &body.mask[3..], body.mass * 1e-5, all);
+        let drag = |name| hypothesis(name, place, vec![Coordinate::level("c", 0.0)]).screened(&[(0, 1e-4)]);
+        all.push(drag("linear-drag"));
+        all.push(drag("quadratic-drag"));
+        add_tether(place, all);
+    }
+    if turns {
+        add_constant("constant-torque", place, &body.mask[..3], 1e-6, all);
+        all.push(hypothesis("angular-damping", place, vec![Coordinate::level("c", 0.0)]).screened(&[(0, 1e-5)]));
+    }
+    if turns && body.mask[..3].iter().all(|m| *m) {
+        add_internal(body, place, facts, all);
+    }
+    add_waves(body, place, facts, all);
+}
+
+fn add_inertial(body: &BodyFact, place: &str, all: &mut Vec<Hypothesis>) {
+    let m = body.mass;
+    let of_arm = !body.is_base;
+    let weighs = of_arm || (body.mask[3..].iter().any(|m| *m) && !body.is_torque_free);
+    if weighs {
+        let mass = vec![Coordinate { bounds: [0.05 * m, 20.0 * m], ..Coordinate::free("mass", m) }];
+        all.push(hypothesis("body-mass", place, mass).screened(&[(0, 1e-4 * m)]).nominal_number());
+        let com = (0..3).map(|k| Coordinate::free(COM[k], body.com[k])).collect();
+        all.push(hypothesis("body-com", place, com).screened(&[(0, 1e-5), (1, 1e-5), (2, 1e-5)]).nominal_number());
+    }
+    let i = &body.inertia;
+    let entries = [i[(0, 0)], i[(1, 1)], i[(2, 2)], i[(0, 1)], i[(0, 2)], i[(1, 2)]];
+    let size = (i.trace() / 3.0).max(1e-9);
+    let inertia: Vec<Coordinate> = (0..6).map(|k| Coordinate::free(INERTIA[k], entries[k])).collect();
+    // A body that nothing pushes shows only ratios: Ixx stays.
+    let first = usize::from(body.is_torque_free);
+    let columns: Vec<(usize, f64)> = (first..6).map(|k| (k, 1e-4 * size)).collect();
+    all.push(hypothesis("body-inertia", place, inertia).screened(&columns).nominal_number());
+    if of_arm {
+        let payload = vec![
+            Coordinate::level("mass", 0.0),
+            Coordinate::free(COM[0], 0.0),
+            Coordinate::free(COM[1], 0.0),
+            Coordinate::free(COM[2], 0.0),
+        ];
+        let link = place.replacen("body:", "link:", 1);
+        let at = |c: [f64; 3]| vec![1e-2, 1e-2 * c[0], 1e-2 * c[1], 1e-2 * c[2]];
+        let points = [at([0.0; 3]), at([0.1, 0.0, 0.0]), at([0.0, 0.1, 0.0]), at([0.0, 0.0, 0.1])];
+        all.push(hypothesis("payload", &link, payload).encoded(Encoding::Moment).screened_at("", &points));
+    }
+}
+
+fn add_constant(name: &'static str, place: &str, mask: &[bool], step: f64, all: &mut Vec<Hypothesis>) {
+    let columns: Vec<(usize, f64)> = (0..3).filter(|k| mask[*k]).map(|k| (k, step)).collect();
+    for frame in ["body", "world"] {
+        let vector = (0..3).map(|k| Coordinate::free(VECTOR[k], 0.0)).collect();
+        let mut h = hypothesis(name, place, vector).screened(&columns);
+        h.constants.push(("frame", ParamValue::Text(frame.to_owned())));
+        all.push(h);
+    }
+}
+
+fn add_tether(place: &str, all: &mut Vec<Hypothesis>) {
+    let tether = vec![
+        Coordinate::level("k", 0.0),
+        Coordinate::free("anchor[0]", 0.0),
+        Coordinate::free("anchor[1]", 0.0),
+        Coordinate::free("anchor[2]", 0.0),
+        Coordinate::level("d", 0.0),
+    ];
+    let steps = [(0, 1e-3), (1, 1e-4), (2, 1e-4), (3, 1e-4), (4, 1e-3)];
+    all.push(hypothesis("tether-stiffness", place, tether).encoded(Encoding::Anchored).screened(&steps));
+}
+
+/// Directions of an axis: 13 of a cube's, one of each pair.
+fn axes() -> Vec<Vec3> {
+    let digit = |i: usize, place: usize| (i / 3usize.pow(place as u32) % 3) as f64 - 1.0;
+    let all = (0..27).map(|i| Vec3::new(digit(i, 2), digit(i, 1), digit(i, 0)));
+    let first_positive = |d: &Vec3| d.iter().find(|x| **x != 0.0).is_some_and(|x| *x > 0.0);
+    all.filter(first_positive).map(|d| d.normalize()).collect()
+}
+
+/// Moving parts inside a body, and the tide.
+fn add_internal(body: &BodyFact, place: &str, facts: &Facts, all: &mut Vec<Hypothesis>) {
+    let size = body.inertia.trace() / 3.0;
+    let damper = vec![Coordinate::level("i_damper", 0.0), Coordinate::log("c", 0.01, [1e-5, 10.0])];
+    let rates = log_grid(1e-3, 1.0, 1.0);
+    all.push(
+        hypothesis("internal-dissipation", place, damper)
+            .encoded(Encoding::RateOfInertia)
+            .screened_on(1, &rates, &[(vec![(0, 1.0)], 1e-3 * size)]),
+    );
+    let tide = vec![Coordinate::level("mean_motion", 0.0)];
+    all.push(hypothesis("gravity-gradient", place, tide).encoded(Encoding::Squared).screened(&[(0, 1e-7)]));
+    let grid = log_grid((6.0 / facts.duration).max(0.02), 2.0, 1.0);
+    all.push(slosh(body, place, &grid));
+    all.push(appendage(body, place, &grid));
+}
+
+fn slosh(body: &BodyFact, place: &str, grid: &[f64]) -> Hypothesis {
+    let mut coordinates = vec![
+        Coordinate { bounds: [0.0, 0.5 * body.mass], ..Coordinate::level("mass", 0.0) },
+        Coordinate::log("frequency", 0.1, [5e-3, 20.0]),
+        Coordinate::log("damping", 0.02, [1e-4, 1.0]),
+    ];
+    coordinates.extend((0..3).map(|k| Coordinate { bounds: [-3.0, 3.0], ..Coordinate::free(POSITION[k], 0.0) }));
+    let mut h = hypothesis("slosh", place, coordinates);
+    for f in grid {
+        for axis in axes() {
+            let mut base = h.neutral();
+            base[1] = f.ln();
+            (0..3).for_each(|k| base[3 + k] = 0.5 * axis[k]);
+            let label = format!("f = {f:.3} Hz along {:.1} {:.1} {:.1}", axis.x, axis.y, axis.z);
+            h.screens.push(ScreenPoint { label, columns: vec![along(&base, &[(0, 1.0)], 1e-3 * body.mass)] });
+        }
+    }
+    h
+}
+
+fn appendage(body: &BodyFact, place: &str, grid: &[f64]) -> Hypothesis {
+    let mut coordinates =
+        vec![Coordinate::log("frequency", 0.1, [5e-3, 20.0]), Coordinate::log("damping", 0.01, [1e-4, 1.0])];
+    coordinates.extend((0..3).map(|k| Coordinate::free(COUPLING[k], 0.0)));
+    let mut h = hypothesis("flexible-appendage", place, coordinates);
+    let size = (0.02 * body.inertia.trace() / 3.0).sqrt();
+    for f in grid {
+        for axis in axes() {
+            let mut point = h.neutral();
+            point[0] = f.ln();
+            (0..3).for_each(|k| point[2 + k] = size * axis[k]);
+            let label = format!("f = {f:.3} Hz along {:.1} {:.1} {:.1}", axis.x, axis.y, axis.z);
+            let column = Column { base: vec![0.0; 5], direction: point, step: 1.0, secant: true };
+            h.screens.push(ScreenPoint { label, columns: vec![column] });
+        }
+    }
+    h
+}
+
+/// Pumps and wheels: a vector that swings with one phase.
+fn add_waves(body: &BodyFact, place: &str, facts: &Facts, all: &mut Vec<Hypothesis>) {
+    let grid = log_grid(2.0 / facts.duration.max(1.0), 16.0, 1.0);
+    for (kind, mask, step) in [("torque", &body.mask[..3], 1e-5), ("force", &body.mask[3..], 1e-4)] {
+        if !mask.iter().any(|m| *m) {
+            continue;
+        }
+        let mut coordinates: Vec<Coordinate> = (0..3).map(|k| Coordinate::free(AMPLITUDE[k], 0.0)).collect();
+        coordinates.push(Coordinate::free("phase", 0.0));
+        coordinates.push(Coordinate::log("frequency", 1.0, [0.5 / facts.duration.max(1.0), 200.0]));
+        let mut h = hypothesis("periodic-disturbance", place, coordinates);
+        h.constants.push(("kind", ParamValue::Text(kind.to_owned())));
+        for f in &grid {
+            let mut columns = Vec::new();
+            for quarter in [0.0, std::f64::consts::FRAC_PI_2] {
+                let mut base = h.neutral();
+                (base[3], base[4]) = (quarter, f.ln());
+                columns.extend((0..3).filter(|k| mask[*k]).map(|k| along(&base, &[(k, 1.0)], step)));
+            }
+            h.screens.push(ScreenPoint { label: format!("f = {f:.3} Hz"), columns });
+        }
+        all.push(h);
+    }
+}
+
+pub(super) fn add_world(facts: &Facts, all: &mut Vec<Hypothesis>) {
+    let mut mask = [false; 3];
+    for body in facts.bodies.iter().filter(|b| b.is_base) {
+        (0..3).for_each(|k| mask[k] |= body.mask[3 + k]);
+    }
+    let columns: Vec<(usize, f64)> = (0..3).filter(|k| mask[*k] || !facts.joints.is_empty()).map(|k| (k, 1e-6)).collect();
+    if !columns.is_empty() {
+        let vector = (0..3).map(|k| Coordinate::free(VECTOR[k], 0.0)).collect();
+        all.push(hypothesis("tilt", "world", vector).screened(&columns));
+    }
+}

@@ -1,0 +1,192 @@
+//! What the nominal model and the recording offer to hypotheses: places and nominal numbers.
+
+use crate::plant::Built;
+use crate::reading::Quantity;
+use crate::tape::Tape;
+use contact::{Normal, NormalLaw};
+use friction::Friction;
+use multibody::JointKind;
+use sim::{ActuatorKind, Base};
+use spatial::{Mat3, Vec3};
+
+/// Places at which effects could act.
+#[derive(Clone, Debug, Default)]
+pub struct Facts {
+    /// Joints with one coordinate.
+    pub joints: Vec<JointFact>,
+    /// Bases that move, and links of arms.
+    pub bodies: Vec<BodyFact>,
+    /// Contact pairs.
+    pub contacts: Vec<ContactFact>,
+    /// Thrusters.
+    pub thrusters: Vec<String>,
+    /// What was measured.
+    pub sensors: Vec<SensorFact>,
+    /// Longest run, s.
+    pub duration: f64,
+}
+
+/// A joint.
+#[derive(Clone, Debug)]
+pub struct JointFact {
+    /// Its name.
+    pub name: String,
+    /// Index into `v`.
+    pub coordinate: usize,
+    /// Reflected rotor inertia, kg·m² or kg.
+    pub armature: f64,
+    /// Largest command, N·m or N; zero where none was recorded.
+    pub largest_command: f64,
+}
+
+/// A body.
+#[derive(Clone, Debug)]
+pub struct BodyFact {
+    /// Its link.
+    pub name: String,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Centre of mass, link frame, m.
+    pub com: Vec3,
+    /// About the centre of mass, kg·m².
+    pub inertia: Mat3,
+    /// The base's free components; all false for the link of an arm on a fixed base.
+    pub mask: [bool; 6],
+    /// Whether it is a vehicle's base.
+    pub is_base: bool,
+    /// Whether nothing but its own inertia moves it: no thruster, no contact.
+    pub is_torque_free: bool,
+}
+
+/// A contact pair.
+#[derive(Clone, Debug)]
+pub struct ContactFact {
+    /// `probe/drogue`.
+    pub name: String,
+    /// Normal law: stiffness, exponent, dissipation.
+    pub normal: Option<[f64; 3]>,
+    /// Bristle law: level, stiffness, damping.
+    pub bristle: Option<[f64; 3]>,
+    /// Mass of the lighter free body, kg.
+    pub mass: f64,
+    /// Whether both sides can move against each other in space.
+    pub has_normal_motion: bool,
+}
+
+/// A sensor.
+#[derive(Clone, Debug)]
+pub struct SensorFact {
+    /// Channel without component.
+    pub channel: String,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// Components.
+    pub axes: Vec<usize>,
+    /// Noise, its unit.
+    pub sigma: f64,
+}
+
+impl Facts {
+    /// Collects them.
+    pub fn new(built: &Built, tapes: &[Tape]) -> Self {
+        let sensors = tapes.first().map_or(Vec::new(), |t| {
+            let fact = |r: &crate::reading::Reading| SensorFact {
+                channel: r.channel.clone(),
+                quantity: r.quantity,
+                axes: r.axes.clone(),
+                sigma: r.sigma,
+            };
+            t.readings.iter().map(fact).collect()
+        });
+        Self {
+            joints: joints(built, tapes),
+            bodies: bodies(built),
+            contacts: contacts(built),
+            thrusters: thrusters(built),
+            sensors,
+            duration: tapes.iter().map(|t| t.span.1 - t.span.0).fold(0.0, f64::max),
+        }
+    }
+}
+
+fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
+    let mut all = Vec::new();
+    for vehicle in &built.model.vehicles {
+        let single = |j: &&multibody::Joint| !j.is_mimic && matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
+        for joint in vehicle.tree.joints.iter().filter(single) {
+            let coordinate = vehicle.v0 + joint.v_index;
+            let drives = |i: usize| {
+                matches!(built.model.actuators[i].kind, ActuatorKind::JointEffort { coordinate: c, .. } if c == coordinate)
+            };
+            let commands = tapes.iter().flat_map(|t| &t.commands).filter(|c| drives(c.actuator));
+            let largest = commands.flat_map(|c| &c.efforts).fold(0.0_f64, |m, e| m.max(e.abs()));
+            all.push(JointFact { name: joint.name.clone(), coordinate, armature: 0.0, largest_command: largest });
+        }
+    }
+    all
+}
+
+fn bodies(built: &Built) -> Vec<BodyFact> {
+    let touched = |body: usize| {
+        let pairs = 0..built.model.scene.pairs().len();
+        pairs.into_iter().any(|p| built.model.pair_bodies(p).0 == body || built.model.pair_bodies(p).1 == body)
+    };
+    let mut all = Vec::new();
+    for vehicle in &built.model.vehicles {
+        for (l, link) in vehicle.tree.links.iter().enumerate().filter(|(_, l)| l.inertia.mass > 0.0) {
+            let is_base = link.body == 0 && l == 0;
+            if link.body == 0 && vehicle.base == Base::Fixed {
+                continue;
+            }
+            let mask = if is_base { vehicle.base.mask() } else { [false; 6] };
+            let thrust = |k: &ActuatorKind| matches!(k, ActuatorKind::Thruster { body, .. } if *body == vehicle.body0);
+            let pushed = built.model.actuators.iter().any(|a| thrust(&a.kind));
+            all.push(BodyFact {
+                name: link.name.clone(),
+                mass: link.inertia.mass,
+                com: link.inertia.com(),
+                inertia: link.inertia.tensor_com(),
+                mask,
+                is_base,
+                is_torque_free: !pushed && !touched(vehicle.body0) && vehicle.tree.nv == 0,
+            });
+        }
+    }
+    all
+}
+
+fn contacts(built: &Built) -> Vec<ContactFact> {
+    let mut all: Vec<ContactFact> = Vec::new();
+    for (pair, law) in built.model.laws.iter().enumerate() {
+        let [a, b] = built.model.scene.pairs()[pair];
+        let short = |i: usize| {
+            let name = &built.model.collider_names[i];
+            name.rsplit_once('/').map_or(name.as_str(), |(_, s)| s).to_owned()
+        };
+        let name = format!("{}/{}", short(a), short(b));
+        if all.iter().any(|c| c.name == name) {
+            continue;
+        }
+        let normal = normal_numbers(&law.normal);
+        let bristle = match law.friction {
+            Some(Friction::Bristle(f)) => Some([f.mu_kinetic, f.stiffness, f.damping]),
+            _ => None,
+        };
+        all.push(ContactFact { name, normal, bristle, mass: 1.0, has_normal_motion: normal.is_some() });
+    }
+    all
+}
+
+fn normal_numbers(normal: &Normal) -> Option<[f64; 3]> {
+    match normal.law {
+        NormalLaw::HuntCrossley { stiffness, exponent, dissipation } => Some([stiffness, exponent, dissipation]),
+        NormalLaw::SpringDamper { stiffness, .. } => Some([stiffness, 1.0, 0.0]),
+        #[allow(unreachable_patterns)]
+        _ => None,
+    }
+}
+
+fn thrusters(built: &Built) -> Vec<String> {
+    let is_thruster = |a: &&sim::Actuator| matches!(a.kind, ActuatorKind::Thruster { .. });
+    built.model.actuators.iter().filter(is_thruster).map(|a| a.name.clone()).collect()
+}

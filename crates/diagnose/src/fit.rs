@@ -1,0 +1,254 @@
+//! Fits a set of effects: Levenberg–Marquardt over segments, each with its own start.
+//!
+//! One step: K from [`crate::linear`] with the starts eliminated,
+//!
+//!   (A + λ diag A) δθ = −b,    A = K_θθ, b = K_θr,    δx₀ = −(taken_r + taken_θ δθ) of each segment,
+//!
+//! accepted by the full cost. A fit has converged when the linear model promises less than a small part of one noise variance; a
+//! damping that has run away is not convergence, and is said.
+
+use crate::error::DiagnoseError;
+use crate::hypothesis::Hypothesis;
+use crate::linear::{Segment, Stage, Steps, Variation, sum_reduced};
+use crate::plant::{Built, Plant};
+use nalgebra::{DMatrix, DVector};
+use scenario::spec::Effect;
+
+/// Effects with the values of their coordinates.
+#[derive(Clone, Debug, Default)]
+pub struct EffectSet {
+    /// Hypotheses and where in their coordinates they stand.
+    pub members: Vec<(Hypothesis, Vec<f64>)>,
+    /// Coordinates that are not fitted because the data say nothing about them: member and coordinate.
+    pub held: Vec<(usize, usize)>,
+}
+
+impl EffectSet {
+    /// The `[[effect]]` entries.
+    pub fn effects(&self) -> Vec<Effect> {
+        self.members.iter().map(|(h, x)| h.effect(x)).collect()
+    }
+
+    /// Member and coordinate of every fitted number.
+    pub fn slots(&self) -> Vec<(usize, usize)> {
+        let all = self.members.iter().enumerate().flat_map(|(m, (h, _))| (0..h.coordinates.len()).map(move |k| (m, k)));
+        all.filter(|slot| !self.held.contains(slot)).collect()
+    }
+
+    /// The set with one more.
+    pub fn with(&self, hypothesis: &Hypothesis, x: &[f64]) -> Self {
+        let mut set = self.clone();
+        set.members.push((hypothesis.clone(), x.to_vec()));
+        set
+    }
+
+    /// The set without one.
+    pub fn without(&self, member: usize) -> Self {
+        let mut set = Self::default();
+        for (i, m) in self.members.iter().enumerate().filter(|(i, _)| *i != member) {
+            set.held.extend(self.held.iter().filter(|h| h.0 == i).map(|h| (set.members.len(), h.1)));
+            set.members.push(m.clone());
+        }
+        set
+    }
+
+    fn moved(&self, slots: &[(usize, usize)], by: &[f64]) -> Self {
+        let mut set = self.clone();
+        for ((m, k), d) in slots.iter().zip(by) {
+            set.members[*m].1[*k] += d;
+        }
+        for (h, x) in &mut set.members {
+            *x = h.clamped(x);
+        }
+        set
+    }
+}
+
+/// What came of a fit.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The set at its best.
+    pub set: EffectSet,
+    /// The model of it.
+    pub built: Built,
+    /// Segments with their starts at their best.
+    pub segments: Vec<Segment>,
+    /// Squared norm of the residual, units of noise.
+    pub cost: f64,
+    /// Scalars in it.
+    pub count: usize,
+    /// Free numbers: of the starts and of the set.
+    pub freedom: usize,
+    /// Inverse of A over the fitted slots.
+    pub covariance: DMatrix<f64>,
+    /// Whether the last step promised next to nothing.
+    pub converged: bool,
+    /// Linearisations made.
+    pub iterations: usize,
+}
+
+impl Fit {
+    /// Cost above what noise alone would leave.
+    pub fn excess(&self) -> f64 {
+        self.cost - (self.count as f64 - self.freedom as f64)
+    }
+
+    /// Standard deviation of the cost under noise alone.
+    pub fn spread(&self) -> f64 {
+        (2.0 * self.count as f64).sqrt()
+    }
+
+    /// Root mean square of the residual, 1 for a perfect model.
+    pub fn rms(&self) -> f64 {
+        (self.cost / self.count.max(1) as f64).sqrt()
+    }
+}
+
+/// How far a fit goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Most linearisations.
+    pub iterations: usize,
+    /// Promised fall of the cost, as a share of the excess and in variances of noise, below which it has converged.
+    pub share: f64,
+}
+
+/// Promised fall of the cost below which a fit has converged whatever its size.
+const NEXT_TO_NOTHING: f64 = 0.3;
+/// Most dampings tried for one linearisation.
+const DAMPINGS: usize = 7;
+
+/// Fits the starts alone (a set without members) or starts and set together.
+pub fn fit(stage: &Stage<'_>, plant: &Plant, set: EffectSet, segments: Vec<Segment>, effort: Effort) -> Result<Fit, DiagnoseError> {
+    let built = plant.build(&set.effects())?;
+    let segments: Vec<Segment> = segments.into_iter().map(|s| Segment { start: s.start.fitted_to(&built), ..s }).collect();
+    let (cost, count) = stage.cost(&built, &segments);
+    let mut now = Fit {
+        freedom: set.slots().len(),
+        set,
+        built,
+        segments,
+        cost,
+        count,
+        covariance: DMatrix::zeros(0, 0),
+        converged: false,
+        iterations: 0,
+    };
+    let mut steps = Steps::default();
+    let mut sizes = first_sizes(&now.set);
+    let mut damping = 1e-3;
+    while now.iterations < effort.iterations && !now.converged {
+        damping = iterate(stage, plant, &mut now, (&mut steps, &mut sizes), (damping, effort))?;
+    }
+    Ok(now)
+}
+
+/// First steps of the difference quotients.
+fn first_sizes(set: &EffectSet) -> Vec<f64> {
+    let size = |(m, k): &(usize, usize)| {
+        let (h, x) = &set.members[*m];
+        let screened = h.screens.iter().flat_map(|s| &s.columns).filter(|c| !c.secant && c.direction[*k] != 0.0);
+        screened.map(|c| c.step).next().unwrap_or_else(|| (1e-4 * x[*k].abs()).max(1e-6))
+    };
+    set.slots().iter().map(size).collect()
+}
+
+/// One linearisation and the steps tried from it; returns the damping to begin with next time.
+fn iterate(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    now: &mut Fit,
+    (steps, sizes): (&mut Steps, &mut Vec<f64>),
+    (mut damping, effort): (f64, Effort),
+) -> Result<f64, DiagnoseError> {
+    let slots = now.set.slots();
+    let variations = vary(plant, &now.set, &slots, sizes)?;
+    let linear = stage.linearise(&now.built, &now.segments, &variations, steps);
+    now.iterations += 1;
+    let k = sum_reduced(&linear);
+    let n = slots.len();
+    let (a, b, left) = (k.view((0, 0), (n, n)).into_owned(), k.view((0, n), (n, 1)).into_owned(), k[(n, n)]);
+    rescale(sizes, &a, now.count);
+    now.freedom = n + linear.iter().map(|s| s.shown).sum::<usize>();
+    now.covariance = pseudo_inverse(&a);
+    let promised = now.cost - left + (b.transpose() * &now.covariance * &b)[(0, 0)];
+    if promised < NEXT_TO_NOTHING.max(effort.share * now.excess()) {
+        now.converged = true;
+        return Ok(damping);
+    }
+    for _ in 0..DAMPINGS {
+        let theta = step(&a, &b, damping);
+        let set = now.set.moved(&slots, theta.as_slice());
+        let actual: Vec<f64> =
+            slots.iter().map(|(m, c)| set.members[*m].1[*c] - now.set.members[*m].1[*c]).collect();
+        let moved = |(segment, linear): (&Segment, &crate::linear::SegmentLinear)| Segment {
+            start: segment.start.retract(&linear.freedoms, &linear.start_step(&actual)),
+            ..segment.clone()
+        };
+        let segments: Vec<Segment> = now.segments.iter().zip(&linear).map(moved).collect();
+        if let Ok(built) = plant.build(&set.effects()) {
+            let (cost, _) = stage.cost(&built, &segments);
+            if cost < now.cost {
+                let gained = now.cost - cost;
+                (now.set, now.built, now.segments, now.cost) = (set, built, segments, cost);
+                now.converged = gained < NEXT_TO_NOTHING.max(effort.share * now.excess());
+                return Ok((damping * 0.1).max(1e-9));
+            }
+        }
+        damping = (damping * 10.0).max(1e-3);
+    }
+    // No step helps any more: the linear model has no say below the roughness of the cost.
+    now.iterations = effort.iterations;
+    Ok(damping)
+}
+
+/// A model for each fitted coordinate, moved by its step.
+pub fn vary(plant: &Plant, set: &EffectSet, slots: &[(usize, usize)], sizes: &[f64]) -> Result<Vec<Variation>, DiagnoseError> {
+    let vary_one = |((m, k), size): (&(usize, usize), &f64)| {
+        let coordinate = &set.members[*m].0.coordinates[*k];
+        let at = set.members[*m].1[*k];
+        let step = if at + size > coordinate.bounds[1] { -size } else { *size };
+        let mut moved = set.clone();
+        moved.members[*m].1[*k] += step;
+        Ok(Variation { built: plant.build(&moved.effects())?, step })
+    };
+    slots.iter().zip(sizes).map(vary_one).collect()
+}
+
+/// Steps for the next linearisation: a fifth of the noise, as far as the eliminated columns tell.
+fn rescale(sizes: &mut [f64], a: &DMatrix<f64>, count: usize) {
+    for (k, size) in sizes.iter_mut().enumerate() {
+        let rms = *size * (a[(k, k)].max(0.0) / count.max(1) as f64).sqrt();
+        if rms > 0.0 && !(0.01..1.0).contains(&rms) {
+            *size *= (0.1 / rms).clamp(1e-3, 1e3);
+        }
+    }
+}
+
+/// −(A + λ diag A)⁻¹ b in scaled coordinates.
+fn step(a: &DMatrix<f64>, b: &DMatrix<f64>, damping: f64) -> DVector<f64> {
+    let n = a.nrows();
+    let scale = DVector::from_fn(n, |i, _| if a[(i, i)] > 0.0 { 1.0 / a[(i, i)].sqrt() } else { 0.0 });
+    let scaled = DMatrix::from_fn(n, n, |i, j| {
+        let own = if i == j { damping + 1e-12 + if scale[i] == 0.0 { 1.0 } else { 0.0 } } else { 0.0 };
+        a[(i, j)] * scale[i] * scale[j] + own
+    });
+    let right = DVector::from_fn(n, |i, _| scale[i] * b[(i, 0)]);
+    let x = scaled.cholesky().map_or_else(|| DVector::zeros(n), |c| c.solve(&right));
+    DVector::from_fn(n, |i, _| -scale[i] * x[i])
+}
+
+/// Inverse of A in scaled coordinates; directions that the data do not show are left out.
+pub fn pseudo_inverse(a: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = a.nrows();
+    if n == 0 {
+        return DMatrix::zeros(0, 0);
+    }
+    let scale = DVector::from_fn(n, |i, _| if a[(i, i)] > 0.0 { 1.0 / a[(i, i)].sqrt() } else { 0.0 });
+    let scaled = DMatrix::from_fn(n, n, |i, j| 0.5 * (a[(i, j)] + a[(j, i)]) * scale[i] * scale[j]);
+    let eigen = scaled.symmetric_eigen();
+    let inverse = eigen.eigenvalues.map(|l| if l > 1e-9 { 1.0 / l } else { 0.0 });
+    let v = &eigen.eigenvectors;
+    let m = v * DMatrix::from_diagonal(&inverse) * v.transpose();
+    DMatrix::from_fn(n, n, |i, j| m[(i, j)] * scale[i] * scale[j])
+}

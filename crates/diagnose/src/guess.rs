@@ -1,0 +1,124 @@
+//! A first guess of the state at an instant, from the samples around it.
+//!
+//! A parabola through the nearest samples of each component gives value and rate at the instant; of an orientation, through the rotation
+//! vectors from the nearest sample. What nothing measures stays as the scenario has it.
+
+use crate::plant::Built;
+use crate::reading::{LinkPlace, Quantity, Reading, Value};
+use crate::start::Start;
+use crate::tape::Tape;
+use nalgebra::{Matrix3, Vector3};
+use sim::Base;
+use spatial::{Rot, Twist, Vec3, exp_rotation, log_rotation};
+
+/// Samples that a guess looks at.
+const NEAREST: usize = 15;
+
+/// The start of a replay at `time`, guessed.
+pub fn guess(built: &Built, tape: &Tape, time: f64) -> Start {
+    let mut start = Start { time, ..Start::nominal(built) };
+    for (v, vehicle) in built.model.vehicles.iter().enumerate().filter(|(_, v)| v.base != Base::Fixed) {
+        let of_base = |p: LinkPlace| p.vehicle == v && vehicle.tree.links[p.link].body == 0 && p.link == 0;
+        guess_base(&mut start, v, tape, time, of_base);
+        mask_twist(&mut start.twists[v], &vehicle.base.mask());
+    }
+    for reading in &tape.readings {
+        match reading.quantity {
+            Quantity::JointPosition { q, v } => {
+                let (x, rate) = fit_vector(reading, time);
+                start.q[q] = x.x;
+                if !tape.readings.iter().any(|r| r.quantity == Quantity::JointVelocity { q, v }) {
+                    start.v[v] = rate.x;
+                }
+            }
+            Quantity::JointVelocity { v, .. } => start.v[v] = fit_vector(reading, time).0.x,
+            _ => {}
+        }
+    }
+    start
+}
+
+fn guess_base(start: &mut Start, v: usize, tape: &Tape, time: f64, of_base: impl Fn(LinkPlace) -> bool) {
+    for reading in &tape.readings {
+        match reading.quantity {
+            Quantity::Position(p) if of_base(p) => {
+                let (x, rate) = fit_vector(reading, time);
+                for &axis in &reading.axes {
+                    start.bases[v].translation.vector[axis] = x[axis];
+                    start.twists[v].lin[axis] = rate[axis];
+                }
+            }
+            Quantity::Orientation(p) if of_base(p) => {
+                let (rot, rate) = fit_rotation(reading, time);
+                start.bases[v].rotation = rot;
+                start.twists[v].ang = rate;
+            }
+            _ => {}
+        }
+    }
+    for reading in &tape.readings {
+        match reading.quantity {
+            Quantity::LinearVelocity(p) if of_base(p) => {
+                let (x, _) = fit_vector(reading, time);
+                reading.axes.iter().for_each(|&axis| start.twists[v].lin[axis] = x[axis]);
+            }
+            Quantity::AngularVelocity(p) if of_base(p) && reading.axes.len() == 3 => {
+                start.twists[v].ang = start.bases[v].rotation * fit_vector(reading, time).0;
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The components of a twist that a guide holds are zero.
+fn mask_twist(twist: &mut Twist, mask: &[bool; 6]) {
+    for axis in 0..3 {
+        if !mask[axis] {
+            twist.ang[axis] = 0.0;
+        }
+        if !mask[3 + axis] {
+            twist.lin[axis] = 0.0;
+        }
+    }
+}
+
+/// The samples nearest to an instant.
+fn nearest(times: &[f64], time: f64) -> std::ops::Range<usize> {
+    let at = times.partition_point(|t| *t < time);
+    let first = at.saturating_sub(NEAREST / 2).min(times.len().saturating_sub(NEAREST));
+    first..(first + NEAREST).min(times.len())
+}
+
+/// Value and rate at `time` by a parabola through the nearest samples.
+fn fit_vector(reading: &Reading, time: f64) -> (Vec3, Vec3) {
+    let range = nearest(&reading.times, time);
+    let value = |i: usize| if let Value::Vector(v) = reading.values[i] { v } else { Vec3::zeros() };
+    fit(&reading.times[range.clone()], range.map(value), time)
+}
+
+fn fit_rotation(reading: &Reading, time: f64) -> (Rot, Vec3) {
+    let range = nearest(&reading.times, time);
+    let rotation = |i: usize| if let Value::Rotation(q) = reading.values[i] { q } else { Rot::identity() };
+    let centre = rotation(range.start + range.len() / 2);
+    let turned = range.clone().map(|i| log_rotation(&(rotation(i) * centre.inverse())));
+    let (phi, rate) = fit(&reading.times[range.clone()], turned, time);
+    (exp_rotation(&phi) * centre, rate)
+}
+
+fn fit(times: &[f64], values: impl Iterator<Item = Vec3>, time: f64) -> (Vec3, Vec3) {
+    let width = times.iter().map(|t| (t - time).abs()).fold(1e-12, f64::max);
+    let (mut a, mut b) = (Matrix3::zeros(), Matrix3::zeros());
+    for (t, value) in times.iter().zip(values) {
+        let x = (t - time) / width;
+        let basis = Vector3::new(1.0, x, x * x);
+        a += basis * basis.transpose();
+        b += basis * value.transpose();
+    }
+    match (times.len() >= 6).then(|| a.try_inverse()).flatten() {
+        Some(inverse) => {
+            let c = inverse * b;
+            (c.row(0).transpose(), c.row(1).transpose() / width)
+        }
+        None => (b.row(0).transpose() / a[(0, 0)].max(1.0), Vec3::zeros()),
+    }
+}

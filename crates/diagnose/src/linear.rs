@@ -1,0 +1,266 @@
+//! A replay made linear: residuals and their derivatives by free starts and by parameters, starts eliminated.
+//!
+//! Per segment, with r the residuals, S = ∂r/∂x₀ and G = ∂r/∂θ (difference quotients over steps that move the residual by a fraction of the
+//! noise), only products are kept:
+//!
+//!   H = [S G r]ᵀ [S G r],      K = H_pp − H_ps H_ss⁺ H_sp,      p = (θ, r)
+//!
+//! K is the Gram matrix of what is left of G and r when the start has done what it can (Schur complement; the pseudo-inverse of the scaled
+//! H_ss is damped, so that a start that nothing shows stays put). Sums of K over segments hold everything that a step of a fit and a score
+//! test need.
+
+use crate::error::DiagnoseError;
+use crate::plant::Built;
+use crate::replay::{Pace, Span, residuals};
+use crate::start::{Freedom, Start, freedoms};
+use crate::tape::Tape;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// A stretch of a run, with the start that is believed at present.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    /// Index of the run.
+    pub run: usize,
+    /// The stretch.
+    pub span: Span,
+    /// Its start.
+    pub start: Start,
+}
+
+/// A changed model and how far it was changed: one column of G.
+#[derive(Clone, Debug)]
+pub struct Variation {
+    /// The model with one parameter moved.
+    pub built: Built,
+    /// By how much.
+    pub step: f64,
+}
+
+/// Products of one segment's residuals and derivatives.
+#[derive(Clone, Debug)]
+pub struct SegmentLinear {
+    /// Scalars in the residual.
+    pub count: usize,
+    /// Squared norm of the residual.
+    pub cost: f64,
+    /// Free coordinates of the start.
+    pub freedoms: Vec<Freedom>,
+    /// How many of them the residual shows.
+    pub shown: usize,
+    /// Gram matrix of (G, r) with the start eliminated.
+    pub reduced: DMatrix<f64>,
+    /// H_ss⁺ H_sp: what the start takes of each column of (G, r).
+    pub taken: DMatrix<f64>,
+}
+
+/// Steps of the difference quotients by coordinate of the start; they live from one linearisation to the next.
+#[derive(Clone, Debug, Default)]
+pub struct Steps {
+    sizes: BTreeMap<(usize, usize), f64>,
+}
+
+/// Damping of the scaled H_ss.
+const DAMPING: f64 = 1e-9;
+/// Root mean square by which a step shall move the residual, in units of noise.
+const WISH: f64 = 0.2;
+/// Range of that within which a step is kept.
+const FAIR: [f64; 2] = [0.02, 2.0];
+
+/// Everything that replays need beside the segment itself.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<'a> {
+    /// Runs.
+    pub tapes: &'a [Tape],
+    /// Step of the replay.
+    pub pace: Pace,
+}
+
+impl Stage<'_> {
+    /// Residuals of a segment; infinite where the replay left the range of numbers.
+    pub fn residuals(&self, built: &Built, segment: &Segment) -> DVector<f64> {
+        self.residuals_from(built, segment, &segment.start)
+    }
+
+    fn residuals_from(&self, built: &Built, segment: &Segment, start: &Start) -> DVector<f64> {
+        let tape = &self.tapes[segment.run];
+        match residuals(built, tape, start, segment.span, self.pace) {
+            Ok(r) => DVector::from_vec(r),
+            Err(_) => {
+                let range = tape.range(segment.span);
+                DVector::from_element(tape.offsets[range.end] - tape.offsets[range.start], f64::INFINITY)
+            }
+        }
+    }
+
+    /// Squared norm of all residuals, and how many there are.
+    pub fn cost(&self, built: &Built, segments: &[Segment]) -> (f64, usize) {
+        let parts: Vec<(f64, usize)> = segments
+            .par_iter()
+            .map(|s| {
+                let r = self.residuals(built, s);
+                (finite(r.norm_squared()), r.len())
+            })
+            .collect();
+        parts.iter().fold((0.0, 0), |sum, p| (sum.0 + p.0, sum.1 + p.1))
+    }
+
+    /// Linearises every segment about its start, with a column for each variation.
+    pub fn linearise(&self, built: &Built, segments: &[Segment], variations: &[Variation], steps: &mut Steps) -> Vec<SegmentLinear> {
+        let all = freedoms(&built.model);
+        let first: Vec<Vec<f64>> = segments.iter().map(|s| steps.of(s.run, &all)).collect();
+        let done: Vec<(SegmentLinear, Vec<f64>)> = segments
+            .par_iter()
+            .zip(first)
+            .map(|(segment, sizes)| self.linearise_segment(built, segment, variations, (&all, sizes)))
+            .collect();
+        for (segment, (_, sizes)) in segments.iter().zip(&done) {
+            steps.keep(segment.run, sizes);
+        }
+        done.into_iter().map(|(linear, _)| linear).collect()
+    }
+
+    /// Change of the residual per unit of a variation, from the same start.
+    pub fn column(&self, variation: &Variation, segment: &Segment, r: &DVector<f64>) -> DVector<f64> {
+        let start = segment.start.fitted_to(&variation.built);
+        sane((self.residuals_from(&variation.built, segment, &start) - r) / variation.step)
+    }
+
+    /// Derivatives by coordinates of the start.
+    pub fn start_columns(
+        &self,
+        built: &Built,
+        segment: &Segment,
+        r: &DVector<f64>,
+        all: &[Freedom],
+        steps: &mut Steps,
+    ) -> Vec<DVector<f64>> {
+        let sizes = steps.of(segment.run, all);
+        let (columns, sizes): (Vec<_>, Vec<_>) = self.quotients(built, segment, r, (all, &sizes)).into_iter().unzip();
+        steps.keep(segment.run, &sizes);
+        columns
+    }
+
+    fn quotients(
+        &self,
+        built: &Built,
+        segment: &Segment,
+        r: &DVector<f64>,
+        (all, sizes): (&[Freedom], &[f64]),
+    ) -> Vec<(DVector<f64>, f64)> {
+        let of = |(freedom, size): (&Freedom, &f64)| {
+            quotient(r, *size, |step| self.residuals_from(built, segment, &segment.start.moved(*freedom, step)))
+        };
+        all.par_iter().zip(sizes.par_iter()).map(of).collect()
+    }
+
+    fn linearise_segment(
+        &self,
+        built: &Built,
+        segment: &Segment,
+        variations: &[Variation],
+        (all, sizes): (&[Freedom], Vec<f64>),
+    ) -> (SegmentLinear, Vec<f64>) {
+        let r = self.residuals(built, segment);
+        let of_start = self.quotients(built, segment, &r, (all, &sizes));
+        let of_model: Vec<DVector<f64>> = variations.par_iter().map(|v| self.column(v, segment, &r)).collect();
+        let sizes = of_start.iter().map(|(_, size)| *size).collect();
+        let s: Vec<&DVector<f64>> = of_start.iter().map(|(column, _)| column).collect();
+        let p: Vec<&DVector<f64>> = of_model.iter().chain(std::iter::once(&r)).collect();
+        (eliminate(&s, &p, all), sizes)
+    }
+}
+
+fn finite(cost: f64) -> f64 {
+    if cost.is_nan() { f64::INFINITY } else { cost }
+}
+
+/// A column that no number can hold says nothing.
+fn sane(column: DVector<f64>) -> DVector<f64> {
+    if column.iter().all(|x| x.is_finite()) { column } else { DVector::zeros(column.len()) }
+}
+
+/// Difference quotient over a step that moves the residual by a fraction of the noise; and that step.
+fn quotient(r: &DVector<f64>, first: f64, moved: impl Fn(f64) -> DVector<f64>) -> (DVector<f64>, f64) {
+    let mut step = first;
+    for trial in 0..4 {
+        let column = moved(step) - r;
+        let size = (column.norm_squared() / (r.len().max(1) as f64)).sqrt();
+        let fair = (FAIR[0]..FAIR[1]).contains(&size);
+        if fair || trial == 3 || size == 0.0 {
+            return (sane(column / step), step);
+        }
+        step *= if size.is_finite() { (WISH / size.max(1e-12)).clamp(1e-4, 1e4) } else { 1e-3 };
+        step = step.clamp(1e-13, 1.0);
+    }
+    (DVector::zeros(r.len()), step)
+}
+
+/// Products of the columns, the start's eliminated.
+pub fn eliminate(s: &[&DVector<f64>], p: &[&DVector<f64>], freedoms: &[Freedom]) -> SegmentLinear {
+    let products = |a: &[&DVector<f64>], b: &[&DVector<f64>]| DMatrix::from_fn(a.len(), b.len(), |i, j| a[i].dot(b[j]));
+    let (h_ss, h_sp, h_pp) = (products(s, s), products(s, p), products(p, p));
+    let scale = h_ss.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 });
+    let mut scaled = DMatrix::from_fn(s.len(), s.len(), |i, j| h_ss[(i, j)] * scale[i] * scale[j]);
+    for i in 0..s.len() {
+        scaled[(i, i)] += DAMPING + if scale[i] == 0.0 { 1.0 } else { 0.0 };
+    }
+    let right = DMatrix::from_fn(s.len(), p.len(), |i, j| scale[i] * h_sp[(i, j)]);
+    let taken = match scaled.cholesky() {
+        Some(c) => {
+            let x = c.solve(&right);
+            DMatrix::from_fn(s.len(), p.len(), |i, j| scale[i] * x[(i, j)])
+        }
+        None => DMatrix::zeros(s.len(), p.len()),
+    };
+    let reduced = &h_pp - h_sp.transpose() * &taken;
+    let r = p[p.len() - 1];
+    let shown = scale.iter().filter(|s| **s > 0.0).count();
+    SegmentLinear { count: r.len(), shown, cost: finite(r.norm_squared()), freedoms: freedoms.to_vec(), reduced, taken }
+}
+
+impl SegmentLinear {
+    /// Step of the start that goes with a step of the parameters.
+    pub fn start_step(&self, theta: &[f64]) -> Vec<f64> {
+        let r = self.taken.ncols() - 1;
+        let of = |i: usize| -self.taken[(i, r)] - theta.iter().enumerate().map(|(k, d)| self.taken[(i, k)] * d).sum::<f64>();
+        (0..self.taken.nrows()).map(of).collect()
+    }
+}
+
+impl Steps {
+    fn of(&self, run: usize, all: &[Freedom]) -> Vec<f64> {
+        let size = |(i, f): (usize, &Freedom)| self.sizes.get(&(run, i)).copied().unwrap_or_else(|| f.first_step());
+        all.iter().enumerate().map(size).collect()
+    }
+
+    fn keep(&mut self, run: usize, sizes: &[f64]) {
+        for (i, size) in sizes.iter().enumerate() {
+            self.sizes.insert((run, i), *size);
+        }
+    }
+}
+
+/// Sum of the reduced products over segments.
+pub fn sum_reduced(segments: &[SegmentLinear]) -> DMatrix<f64> {
+    let side = segments.first().map_or(1, |s| s.reduced.nrows());
+    segments.iter().fold(DMatrix::zeros(side, side), |sum, s| sum + &s.reduced)
+}
+
+/// Windows of a run: `length` long, the rest of the run added to the last; the whole run without a length.
+pub fn windows(tape: &Tape, length: Option<f64>) -> Vec<Span> {
+    let (first, last) = tape.span;
+    let count = length.map_or(1, |l| ((last - first) / l).round().max(1.0) as usize);
+    let at = |i: usize| first + (last - first) * i as f64 / count as f64;
+    (0..count).map(|i| Span { from: at(i), to: at(i + 1) }).collect()
+}
+
+/// An error where a run cannot be replayed at all.
+pub fn check_replay(stage: &Stage<'_>, built: &Built, segments: &[Segment]) -> Result<(), DiagnoseError> {
+    for segment in segments {
+        let tape = &stage.tapes[segment.run];
+        residuals(built, tape, &segment.start, segment.span, stage.pace)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,97 @@
+//! Numbers for a reader: as many digits as they are worth.
+
+/// Four significant digits, powers of ten where they help; "–" for what is not finite.
+pub(crate) fn short(x: f64) -> String {
+    digits(x, 4)
+}
+
+/// `count` significant digits, trailing zeros left out.
+pub(crate) fn digits(x: f64, count: i32) -> String {
+    if !x.is_finite() {
+        return "–".to_owned();
+    }
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e6).contains(&x.abs()) {
+        let text = format!("{x:.*e}", (count - 1).max(0) as usize);
+        let (mantissa, power) = text.split_once('e').unwrap_or((&text, "0"));
+        let mantissa =
+            if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
+        return minus(&format!("{mantissa}·10{}", superscript(power)));
+    }
+    let places = count - 1 - x.abs().log10().floor() as i32;
+    let coarse = 10_f64.powi((-places).max(0));
+    let text =
+        format!("{:.*}", places.clamp(0, 9) as usize, if coarse > 1.0 { (x / coarse).round() * coarse } else { x });
+    minus(if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text })
+}
+
+/// A value with its standard error, both to the error's second digit: `0.9012 ± 0.0011`, `(1.98 ± 0.02)·10⁻⁴`.
+///
+/// Without a finite error the value stands alone.
+pub(crate) fn with_error(value: f64, std_err: f64) -> String {
+    if !(std_err.is_finite() && std_err > 0.0 && value.is_finite()) {
+        return short(value);
+    }
+    let largest = value.abs().max(std_err);
+    let power = if (1e-3..1e6).contains(&largest) { 0 } else { largest.log10().floor() as i32 };
+    let unit = 10_f64.powi(power);
+    let (value, std_err) = (value / unit, std_err / unit);
+    let places = (1 - std_err.log10().floor() as i32).clamp(0, 9) as usize;
+    let text = minus(&format!("{value:.places$} ± {std_err:.places$}"));
+    if power == 0 { text } else { format!("({text})·10{}", superscript(&power.to_string())) }
+}
+
+/// An error in units of noise: three decimals near 1, fewer above.
+pub(crate) fn noise(x: f64) -> String {
+    match x {
+        x if !x.is_finite() => "–".to_owned(),
+        x if x < 10.0 => format!("{x:.3}"),
+        x if x < 1e5 => digits(x, 3),
+        x => digits(x, 2),
+    }
+}
+
+/// A share in per cent: `87 %`, `0.4 %`.
+pub(crate) fn percent(share: f64) -> String {
+    if !share.is_finite() {
+        return "–".to_owned();
+    }
+    let x = 100.0 * share;
+    if x.abs() < 1.0 && x != 0.0 { format!("{x:.1} %") } else { format!("{x:.0} %") }
+}
+
+fn minus(text: &str) -> String {
+    text.replace('-', "−")
+}
+
+fn superscript(power: &str) -> String {
+    let raised = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raise = |c: char| c.to_digit(10).map_or(if c == '-' { '⁻' } else { c }, |d| raised[d as usize]);
+    power.chars().map(raise).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_has_the_digits_that_its_error_is_worth() {
+        assert_eq!(with_error(0.901_234, 0.001_12), "0.9012 ± 0.0011");
+        assert_eq!(with_error(-1.98e-4, 2.3e-6), "(−1.980 ± 0.023)·10⁻⁴");
+        assert_eq!(with_error(3_600_000.0, 21_000.0), "(3.600 ± 0.021)·10⁶");
+        assert_eq!(with_error(158.8, f64::INFINITY), "158.8");
+        assert_eq!(with_error(0.0, 0.02), "0.000 ± 0.020");
+    }
+
+    #[test]
+    fn short_numbers_are_short() {
+        let cases = [(0.0, "0"), (12.0, "12"), (0.012_345, "0.01235"), (-3e-7, "−3·10⁻⁷"), (16_508.0, "16510")];
+        for (x, text) in cases {
+            assert_eq!(short(x), text);
+        }
+        assert_eq!((noise(1.0031), noise(246.67), noise(f64::NAN)), ("1.003".into(), "247".into(), "–".into()));
+        assert_eq!((percent(0.874), percent(0.004)), ("87 %".into(), "0.4 %".into()));
+    }
+}

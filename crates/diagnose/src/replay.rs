@@ -1,0 +1,142 @@
+//! Replay: the scenario driven by recorded commands, read where the recording read.
+//!
+//! Commands hold from their tick to the next. The step ends at every tick and at every instant that a sensor reads, and is never
+//! longer than the plant's step, so that nothing is interpolated; a sensor that is late reads at t − delay.
+
+use crate::error::DiagnoseError;
+use crate::plant::Built;
+use crate::reading::{Quantity, SensorFault, Value, read_motion};
+use crate::start::Start;
+use crate::tape::{Event, Tape};
+use sim::World;
+
+/// A stretch of a run, replayed from a start of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// First instant, s.
+    pub from: f64,
+    /// End, s; samples at the end do not count, but for the run's last.
+    pub to: f64,
+}
+
+/// How finely a replay advances.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pace {
+    /// Longest step, s.
+    pub step: f64,
+}
+
+/// Two instants closer than this are one, s.
+const SAME: f64 = 1e-9;
+
+/// Residuals of a replay, in the order of the tape's events within the span.
+pub fn residuals(built: &Built, tape: &Tape, start: &Start, span: Span, pace: Pace) -> Result<Vec<f64>, DiagnoseError> {
+    let range = tape.range(span);
+    let offset = |i: usize| tape.offsets[range.start + i] - tape.offsets[range.start];
+    let mut out = vec![f64::NAN; offset(range.len())];
+    observe(built, tape, start, span, pace, |i, event, value| {
+        tape.readings[event.reading as usize].write_residual(event.sample as usize, value, &mut out[offset(i)..]);
+    })?;
+    Ok(out)
+}
+
+/// Replays a span and hands every predicted reading to `look`, with its number among the span's events.
+pub fn observe(
+    built: &Built,
+    tape: &Tape,
+    start: &Start,
+    span: Span,
+    pace: Pace,
+    mut look: impl FnMut(usize, &Event, &Value),
+) -> Result<(), DiagnoseError> {
+    let faults: Vec<SensorFault> = tape.readings.iter().map(|r| built.fault(&r.channel)).collect();
+    let events = events_in(tape, span, &faults);
+    let mut world = start.world(built);
+    let mut feed = Feed::new(tape, span.from);
+    feed.apply(&mut world);
+    for (i, event) in &events {
+        while feed.next_tick(tape) < event.time - SAME {
+            advance_to(&mut world, feed.next_tick(tape), pace).map_err(|what| gone(tape, what))?;
+            feed.turn(tape, world.state().time);
+            feed.apply(&mut world);
+        }
+        advance_to(&mut world, event.time, pace).map_err(|what| gone(tape, what))?;
+        let r = event.reading as usize;
+        let value = read(built, &world, tape.readings[r].quantity);
+        let value = match value {
+            Value::Vector(v) => Value::Vector(faults[r].apply(&v)),
+            Value::Rotation(q) => Value::Rotation(faults[r].apply_rotation(&q)),
+        };
+        look(*i, event, &value);
+    }
+    Ok(())
+}
+
+fn read(_built: &Built, world: &World, quantity: Quantity) -> Value {
+    read_motion(quantity, world)
+}
+
+fn gone(tape: &Tape, error: sim::StepError) -> DiagnoseError {
+    DiagnoseError::Replay { file: tape.file.clone(), what: error.to_string() }
+}
+
+/// Advances to an instant in equal steps not longer than the pace.
+fn advance_to(world: &mut World, time: f64, pace: Pace) -> Result<(), sim::StepError> {
+    let left = time - world.state().time;
+    if left <= SAME {
+        return Ok(());
+    }
+    let steps = (left / pace.step - 1e-6).ceil().max(1.0) as u32;
+    let h = left / f64::from(steps);
+    for _ in 0..steps {
+        { let _ = h; world.advance()?; }
+    }
+    Ok(())
+}
+
+/// The events of a span with their numbers, in the order of the instants they tell of: late sensors read what was.
+fn events_in(tape: &Tape, span: Span, faults: &[SensorFault]) -> Vec<(usize, Event)> {
+    let late = |(i, e): (usize, &Event)| {
+        (i, Event { time: (e.time - faults[e.reading as usize].delay).max(span.from), ..*e })
+    };
+    let mut events: Vec<_> = tape.events[tape.range(span)].iter().enumerate().map(late).collect();
+    if faults.iter().any(|f| f.delay != 0.0) {
+        events.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
+    }
+    events
+}
+
+/// The commands that act now, and when they change.
+struct Feed<'a> {
+    tape: &'a Tape,
+    tick: usize,
+    at: Vec<usize>,
+}
+
+impl<'a> Feed<'a> {
+    fn new(tape: &'a Tape, time: f64) -> Self {
+        let mut feed = Self { tape, tick: 0, at: vec![0; tape.commands.len()] };
+        feed.turn(tape, time);
+        feed
+    }
+
+    fn next_tick(&self, tape: &Tape) -> f64 {
+        tape.ticks.get(self.tick).copied().unwrap_or(f64::INFINITY)
+    }
+
+    fn turn(&mut self, tape: &Tape, time: f64) {
+        self.tick = tape.ticks.partition_point(|t| *t <= time + SAME);
+        for (at, command) in self.at.iter_mut().zip(&tape.commands) {
+            while *at < command.times.len() && command.times[*at] <= time + SAME {
+                *at += 1;
+            }
+        }
+    }
+
+    fn apply(&self, world: &mut World) {
+        for (at, command) in self.at.iter().zip(&self.tape.commands) {
+            let effort = at.checked_sub(1).map_or(0.0, |i| command.efforts[i]);
+            world.commands_mut()[command.actuator].effort = effort;
+        }
+    }
+}

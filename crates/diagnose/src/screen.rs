@@ -1,0 +1,193 @@
+//! The screen: what each hypothesis could explain, without a refit.
+//!
+//! For the columns C of a screen point, with starts and the active parameters P projected out of C and r,
+//!
+//!   S = b ᵀA⁻¹ b,  A = C⊥ᵀC⊥,  b = C⊥ᵀr⊥,    amplitudes −A⁻¹ b
+//!
+//! S is the fall of the cost that the linear model promises, χ² with the rank of A where nothing but noise is left. An effect with memory
+//! brings the memory's own start as columns that each segment eliminates: in windows that begin in mid-run it is already moving.
+
+use crate::error::DiagnoseError;
+use crate::fit::{Fit, pseudo_inverse, vary};
+use crate::hypothesis::{Hypothesis, Scale, ScreenPoint};
+use crate::linear::{Segment, Stage, Steps, Variation, eliminate};
+use crate::plant::{Built, Plant};
+use crate::start::{Freedom, freedoms};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// What a screen point promises.
+#[derive(Clone, Debug)]
+pub struct Score {
+    /// Index of the hypothesis.
+    pub hypothesis: usize,
+    /// Index of its screen point.
+    pub point: usize,
+    /// Promised fall of the cost.
+    pub score: f64,
+    /// Rank of its columns.
+    pub rank: usize,
+    /// Coordinates to begin a refit with.
+    pub start: Vec<f64>,
+}
+
+/// Root mean square (units of noise) that a column's step shall have on the pilot segments.
+const WISH: f64 = 0.3;
+/// Segments that tune the steps.
+const PILOTS: usize = 4;
+
+/// One column, ready to be simulated.
+struct Probe {
+    variation: Variation,
+    secant: bool,
+}
+
+/// Scores every screen point of every hypothesis beside a converged fit; best first.
+pub fn screen(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -> Result<Vec<Score>, DiagnoseError> {
+    let slots = fit.set.slots();
+    let sizes: Vec<f64> = slots.iter().map(|(m, k)| active_size(fit, *m, *k)).collect();
+    let active = vary(plant, &fit.set, &slots, &sizes)?;
+    let points: Vec<(usize, usize)> =
+        all.iter().enumerate().flat_map(|(h, hyp)| (0..hyp.screens.len()).map(move |p| (h, p))).collect();
+    let probes: Vec<Vec<Probe>> =
+        points.par_iter().map(|(h, p)| probes_of(stage, plant, fit, &all[*h], &all[*h].screens[*p])).collect();
+    let products = sum_products(stage, fit, &active, &probes);
+    let scores = points.iter().zip(&probes).zip(products).filter_map(|((at, probes), k)| {
+        let hypothesis = &all[at.0];
+        score(hypothesis, &hypothesis.screens[at.1], probes, &k, active.len()).map(|(score, rank, start)| Score {
+            hypothesis: at.0,
+            point: at.1,
+            score,
+            rank,
+            start,
+        })
+    });
+    let mut scores: Vec<Score> = scores.collect();
+    scores.sort_by(|a, b| b.score.total_cmp(&a.score));
+    Ok(scores)
+}
+
+/// A step of an active coordinate: a tenth of its standard error moves the whole residual by a tenth of one unit; a hundredfold of it is still linear.
+fn active_size(fit: &Fit, m: usize, k: usize) -> f64 {
+    let at = fit.set.slots().iter().position(|s| *s == (m, k)).unwrap_or(0);
+    let error = fit.covariance.get((at, at)).map_or(0.0, |v| v.max(0.0).sqrt());
+    let coordinate = &fit.set.members[m].0.coordinates[k];
+    let floor = if coordinate.scale == Scale::Log { 1e-5 } else { 1e-6 * fit.set.members[m].1[k].abs() };
+    (3.0 * error).max(floor).max(1e-12)
+}
+
+/// The columns of a screen point with tuned steps; those that cannot be built are left out.
+fn probes_of(stage: &Stage<'_>, plant: &Plant, fit: &Fit, hypothesis: &Hypothesis, point: &ScreenPoint) -> Vec<Probe> {
+    let build = |base: &[f64], direction: &[f64], step: f64| -> Option<Variation> {
+        let x: Vec<f64> = base.iter().zip(direction).map(|(b, d)| b + step * d).collect();
+        let mut effects = fit.set.effects();
+        effects.push(hypothesis.effect(&hypothesis.clamped(&x)));
+        plant.build(&effects).ok().map(|built| Variation { built, step })
+    };
+    let tuned = |c: &crate::hypothesis::Column| {
+        let first = build(&c.base, &c.direction, c.step)?;
+        if c.secant {
+            return Some(Probe { variation: first, secant: true });
+        }
+        let size = pilot_size(stage, fit, &first.built);
+        let step = if size > 0.0 && size.is_finite() { c.step * (WISH / size).clamp(1e-6, 1e4) } else { c.step };
+        let near = (0.1..3.0).contains(&(step / c.step));
+        let variation = if near { first } else { build(&c.base, &c.direction, step)? };
+        Some(Probe { variation, secant: false })
+    };
+    point.columns.iter().filter_map(tuned).collect()
+}
+
+/// Root mean square of what a changed model does to a few segments.
+fn pilot_size(stage: &Stage<'_>, fit: &Fit, built: &Built) -> f64 {
+    let every = fit.segments.len().div_ceil(PILOTS).max(1);
+    let parts = fit.segments.iter().skip(every / 2).step_by(every).map(|segment| {
+        let moved = Segment { start: segment.start.fitted_to(built), ..segment.clone() };
+        let difference = stage.residuals(built, &moved) - stage.residuals(&fit.built, segment);
+        (difference.norm_squared() / difference.len().max(1) as f64).sqrt()
+    });
+    parts.fold(0.0, f64::max)
+}
+
+/// Reduced products of (active, columns, r) of every point, summed over the segments.
+fn sum_products(stage: &Stage<'_>, fit: &Fit, active: &[Variation], probes: &[Vec<Probe>]) -> Vec<DMatrix<f64>> {
+    let of_segment: Vec<Vec<DMatrix<f64>>> =
+        fit.segments.par_iter().map(|segment| products_of(stage, fit, segment, active, probes)).collect();
+    (0..probes.len())
+        .map(|p| {
+            let side = active.len() + probes[p].len() + 1;
+            of_segment.iter().fold(DMatrix::zeros(side, side), |sum, parts| sum + &parts[p])
+        })
+        .collect()
+}
+
+fn products_of(
+    stage: &Stage<'_>,
+    fit: &Fit,
+    segment: &Segment,
+    active: &[Variation],
+    probes: &[Vec<Probe>],
+) -> Vec<DMatrix<f64>> {
+    let base = freedoms(&fit.built.model);
+    let r = stage.residuals(&fit.built, segment);
+    let mut steps = Steps::default();
+    let s = stage.start_columns(&fit.built, segment, &r, &base, &mut steps);
+    let g: Vec<DVector<f64>> = active.par_iter().map(|v| stage.column(v, segment, &r)).collect();
+    let of_point = |probes: &Vec<Probe>| {
+        let columns: Vec<DVector<f64>> = probes.iter().map(|p| stage.column(&p.variation, segment, &r)).collect();
+        let own = own_columns(stage, segment, &base, probes.first());
+        let starts: Vec<&DVector<f64>> = s.iter().chain(&own).collect();
+        let others: Vec<&DVector<f64>> = g.iter().chain(&columns).chain(std::iter::once(&r)).collect();
+        let names = vec![Freedom::Memory(0); starts.len()];
+        eliminate(&starts, &others, &names).reduced
+    };
+    probes.par_iter().map(of_point).collect()
+}
+
+/// Columns of the memory that a hypothesis brings.
+fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: Option<&Probe>) -> Vec<DVector<f64>> {
+    let Some(probe) = probe else { return Vec::new() };
+    let built = &probe.variation.built;
+    let own: Vec<Freedom> = freedoms(&built.model).into_iter().filter(|f| !base.contains(f)).collect();
+    if own.is_empty() {
+        return Vec::new();
+    }
+    let moved = Segment { start: segment.start.fitted_to(built), ..segment.clone() };
+    let r = stage.residuals(built, &moved);
+    stage.start_columns(built, &moved, &r, &own, &mut Steps::default())
+}
+
+/// Promise, rank and first coordinates of a point.
+fn score(
+    hypothesis: &Hypothesis,
+    point: &ScreenPoint,
+    probes: &[Probe],
+    k: &DMatrix<f64>,
+    active: usize,
+) -> Option<(f64, usize, Vec<f64>)> {
+    let n = probes.len();
+    if n == 0 || n < point.columns.len() {
+        return None;
+    }
+    let (a, b) = project_active(k, active, n);
+    let scale = DVector::from_fn(n, |i, _| if a[(i, i)] > 1e-12 * k[(active + i, active + i)].max(1e-30) { a[(i, i)].sqrt() } else { 0.0 });
+    let rank = scale.iter().filter(|s| **s > 0.0).count();
+    let inverse = pseudo_inverse(&a);
+    let amplitudes = -(&inverse * &b);
+    let score = -(b.transpose() * &amplitudes)[(0, 0)];
+    let weights: Vec<f64> = amplitudes.iter().copied().collect();
+    let start = hypothesis.start_from(point, &weights)?;
+    (score.is_finite() && rank > 0).then_some((score, rank, start))
+}
+
+/// A and b of the last `n` columns with the first `active` ones projected out.
+fn project_active(k: &DMatrix<f64>, active: usize, n: usize) -> (DMatrix<f64>, DMatrix<f64>) {
+    let at = active + n;
+    let kpp = k.view((0, 0), (active, active)).into_owned();
+    let kpc = k.view((0, active), (active, n)).into_owned();
+    let kpr = k.view((0, at), (active, 1)).into_owned();
+    let inverse = pseudo_inverse(&kpp);
+    let a = k.view((active, active), (n, n)) - kpc.transpose() * &inverse * &kpc;
+    let b = k.view((active, at), (n, 1)) - kpc.transpose() * &inverse * &kpr;
+    (a, b)
+}

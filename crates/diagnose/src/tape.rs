@@ -1,0 +1,162 @@
+//! A recorded run, made ready for replay: commands, readings, and the order in which they come.
+
+use crate::error::DiagnoseError;
+use crate::plant::Built;
+use crate::reading::{Quantity, Reading, Value};
+use crate::replay::Span;
+use record::{RecordedRun, RecordingSet, Role, Series};
+use spatial::{Rot, Vec3, nalgebra};
+use std::collections::BTreeMap;
+
+/// Commands of one actuator, each held until the next.
+#[derive(Clone, Debug)]
+pub struct CommandTape {
+    /// Index of the actuator.
+    pub actuator: usize,
+    /// Ticks, s.
+    pub times: Vec<f64>,
+    /// Effort, N or N·m.
+    pub efforts: Vec<f64>,
+}
+
+/// One sample of one reading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// When the sensor read, s.
+    pub time: f64,
+    /// Which reading.
+    pub reading: u32,
+    /// Which of its samples.
+    pub sample: u32,
+}
+
+/// One run.
+#[derive(Clone, Debug)]
+pub struct Tape {
+    /// File of the run.
+    pub file: String,
+    /// Whether it may be used to find and fit a model.
+    pub role: Role,
+    /// Commands.
+    pub commands: Vec<CommandTape>,
+    /// Readings.
+    pub readings: Vec<Reading>,
+    /// All samples by time, readings in order where they are simultaneous.
+    pub events: Vec<Event>,
+    /// Where each event's residual begins among those of the whole run; one more than there are events.
+    pub offsets: Vec<usize>,
+    /// Instants at which commands change, ascending.
+    pub ticks: Vec<f64>,
+    /// First and last sample, s.
+    pub span: (f64, f64),
+}
+
+impl Tape {
+    /// Matches a run's channels with the scenario's quantities.
+    ///
+    /// Channels that the scenario does not know are errors; those that only tell what was commanded or driven are inputs.
+    pub fn new(set: &RecordingSet, run: &RecordedRun, built: &Built) -> Result<Self, DiagnoseError> {
+        let fault = |channel: &str, reason: &str| DiagnoseError::Channel {
+            channel: channel.to_owned(),
+            file: run.file.clone(),
+            reason: reason.to_owned(),
+        };
+        let mut commands = Vec::new();
+        let mut groups: BTreeMap<String, Vec<(usize, &Series)>> = BTreeMap::new();
+        for series in run.series.iter().filter(|s| !s.times.is_empty()) {
+            let channel = series.channel.as_str();
+            if channel.starts_with("drive.") {
+                continue;
+            }
+            if channel.ends_with(".effort_command") || (channel.starts_with("actuator.") && channel.ends_with(".command")) {
+                let (actuator, unit) = built.actuator(channel).ok_or_else(|| {
+                    fault(channel, "the scenario has no actuator of that name; name it as the recording does, or drop the column")
+                })?;
+                let efforts = series.values.iter().map(|v| v * unit).collect();
+                commands.push(CommandTape { actuator, times: series.times.clone(), efforts });
+                continue;
+            }
+            let (prefix, component) = split_component(channel);
+            groups.entry(prefix.to_owned()).or_default().push((component, series));
+        }
+        let mut readings = Vec::new();
+        for (prefix, group) in &groups {
+            let Some(quantity) = built.quantity(prefix) else {
+                return Err(fault(prefix, "nothing in the scenario is measured by it; check joint, body and sensor names"));
+            };
+            readings.extend(readings_of(set, prefix, quantity, group));
+        }
+        Ok(Self::assemble(run, commands, readings))
+    }
+
+    fn assemble(run: &RecordedRun, commands: Vec<CommandTape>, readings: Vec<Reading>) -> Self {
+        let mut events: Vec<Event> = Vec::new();
+        for (r, reading) in readings.iter().enumerate() {
+            let samples = reading.times.iter().enumerate();
+            events.extend(samples.map(|(i, t)| Event { time: *t, reading: r as u32, sample: i as u32 }));
+        }
+        events.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.reading.cmp(&b.reading)));
+        let mut ticks: Vec<f64> = commands.iter().flat_map(|c| c.times.iter().copied()).collect();
+        ticks.sort_by(f64::total_cmp);
+        ticks.dedup();
+        let span = (events.first().map_or(0.0, |e| e.time), events.last().map_or(0.0, |e| e.time));
+        let mut offsets = vec![0];
+        for event in &events {
+            offsets.push(offsets[offsets.len() - 1] + readings[event.reading as usize].width());
+        }
+        Self { file: run.file.clone(), role: run.role, commands, readings, events, offsets, ticks, span }
+    }
+
+    /// The events of a span: those at its end belong to the next, but for the run's last.
+    pub fn range(&self, span: Span) -> std::ops::Range<usize> {
+        let before = |t: f64| self.events.partition_point(|e| e.time < t - 1e-9);
+        let end = if span.to >= self.span.1 { self.events.len() } else { before(span.to) };
+        before(span.from)..end.max(before(span.from))
+    }
+
+    /// Scalars in the residual of all readings.
+    pub fn count_scalars(&self) -> usize {
+        self.readings.iter().map(|r| r.width() * r.times.len()).sum()
+    }
+}
+
+/// `body.target.position.x` → (`body.target.position`, 0); scalars stand in component 0, w of a quaternion in 3.
+fn split_component(channel: &str) -> (&str, usize) {
+    match channel.rsplit_once('.') {
+        Some((prefix, "x")) => (prefix, 0),
+        Some((prefix, "y")) => (prefix, 1),
+        Some((prefix, "z")) => (prefix, 2),
+        Some((prefix, "w")) => (prefix, 3),
+        _ => (channel, 0),
+    }
+}
+
+/// One reading of the components that were sampled together; where they were not, one each.
+fn readings_of(set: &RecordingSet, prefix: &str, quantity: Quantity, group: &[(usize, &Series)]) -> Vec<Reading> {
+    let together = group.iter().all(|(_, s)| s.times == group[0].1.times);
+    let parts: Vec<Vec<(usize, &Series)>> =
+        if together { vec![group.to_vec()] } else { group.iter().map(|g| vec![*g]).collect() };
+    let of_part = |part: &Vec<(usize, &Series)>| {
+        let quantum = part.iter().map(|(_, s)| s.quantum()).fold(0.0, f64::max);
+        let stated = set.sigma(&part[0].1.channel).or_else(|| set.sigma(prefix));
+        let orientation = quantity.is_orientation();
+        // Rounded components of a unit quaternion turn into an angle twice as large.
+        let rounding = if orientation { 2.0 * quantum } else { quantum };
+        let sigma = (stated.unwrap_or(0.0).powi(2) + rounding * rounding / 12.0).sqrt();
+        let times = part[0].1.times.clone();
+        let values = (0..times.len()).map(|i| value_at(part, i, orientation)).collect();
+        let axes = if orientation { vec![0, 1, 2] } else { part.iter().map(|(k, _)| *k).collect() };
+        Reading { channel: prefix.to_owned(), quantity, axes, sigma, times, values }
+    };
+    parts.iter().filter(|p| !quantity.is_orientation() || p.len() == 4).map(of_part).collect()
+}
+
+fn value_at(part: &[(usize, &Series)], i: usize, orientation: bool) -> Value {
+    let mut x = [0.0; 4];
+    part.iter().for_each(|(k, s)| x[*k] = s.values[i]);
+    if orientation {
+        Value::Rotation(Rot::new_normalize(nalgebra::Quaternion::new(x[3], x[0], x[1], x[2])))
+    } else {
+        Value::Vector(Vec3::new(x[0], x[1], x[2]))
+    }
+}

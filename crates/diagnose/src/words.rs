@@ -1,0 +1,227 @@
+//! The verdict in one paragraph of plain words, from the data.
+
+use crate::diagnosis::{Diagnosis, Found, Located, ParamValue, StdErr, Verdict};
+use crate::evidence::Evidence;
+use crate::number::{noise, percent, with_error};
+use crate::vocabulary::{plain_name, unit};
+
+/// A gap of the information criterion below which the data do not decide between two explanations.
+pub const UNDECIDED: f64 = 10.0;
+/// Part of the recording's length that an onset may be late, or an end early, and still be called the whole of it.
+const WHOLE: f64 = 0.03;
+
+/// What came out, in one or two words.
+pub fn headline(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::NoMismatch => "No mismatch",
+        Verdict::Explained => "Explained",
+        Verdict::PartlyExplained => "Partly explained",
+        Verdict::Unknown => "Unknown physics",
+    }
+}
+
+/// The verdict in one paragraph: whether there is a mismatch, where and when, what it is, how sure, and what it improves.
+pub fn paragraph(diagnosis: &Diagnosis, evidence: &Evidence) -> String {
+    let mut said = vec![opening(diagnosis)];
+    if diagnosis.verdict != Verdict::NoMismatch {
+        said.extend(whereabouts(diagnosis, evidence));
+    }
+    said.extend(explanation(diagnosis));
+    said.extend(improvement(diagnosis));
+    said.extend(doubts(diagnosis));
+    said.join(" ")
+}
+
+fn opening(diagnosis: &Diagnosis) -> String {
+    let (scenario, recording) = (&diagnosis.scenario, &diagnosis.recording);
+    let (before, whose) = judged_before(diagnosis);
+    match diagnosis.verdict {
+        Verdict::NoMismatch => format!(
+            "The scenario “{scenario}” predicts the recording “{recording}” as well as the noise of its sensors allows: \
+             its error {whose} is {} times the noise (1 is perfect), and no effect of the library improves it significantly.",
+            noise(before)
+        ),
+        _ => format!(
+            "The recording “{recording}” differs from the scenario “{scenario}” by more than the noise of its sensors: \
+             {whose} the scenario is wrong by {} times the noise (1 is perfect).",
+            noise(before)
+        ),
+    }
+}
+
+/// The nominal error that says most, and on which runs.
+fn judged_before(diagnosis: &Diagnosis) -> (f64, &'static str) {
+    match diagnosis.error.holdout {
+        Some(holdout) => (holdout.before, "on runs that were not used for the search"),
+        None => (diagnosis.error.fit.before, "on the runs that were used (there are no others)"),
+    }
+}
+
+fn whereabouts(diagnosis: &Diagnosis, evidence: &Evidence) -> Option<String> {
+    let first = diagnosis.located.first()?;
+    let mut said = format!("{} of the mismatch sits at {}", percent(first.share), place_words(&first.place));
+    said += &format!(" ({}", when_words(first, evidence));
+    match first.condition.trim() {
+        "" | "always" => said += ")",
+        condition => said += &format!("; {condition})"),
+    }
+    if let Some(second) = diagnosis.located.get(1).filter(|l| l.share >= 0.1) {
+        said += &format!(", {} at {}", percent(second.share), place_words(&second.place));
+    }
+    Some(said + ".")
+}
+
+/// A place for a reader: `joint joint_3`, `contact of probe and drogue`.
+pub fn place_words(place: &str) -> String {
+    let (kind, name) = place.split_once(':').unwrap_or((place, ""));
+    match kind {
+        "contact" => format!("the contact of {}", name.replacen('/', " and ", 1)),
+        "world" => "the whole rig".to_owned(),
+        "sensor" => format!("the sensor {name}"),
+        _ if name.starts_with(kind) => name.to_owned(),
+        _ => format!("{kind} {name}"),
+    }
+}
+
+/// When a mismatch is there: "throughout", "from 12.4 s on", "from 3 s to 5 s".
+pub fn when_words(located: &Located, evidence: &Evidence) -> String {
+    let edges = || evidence.heat.iter().flat_map(|h| h.edges_s.iter().copied());
+    let (start, end) = (edges().fold(f64::INFINITY, f64::min), edges().fold(f64::NEG_INFINITY, f64::max));
+    let room = WHOLE * (end - start).max(0.0);
+    let is_late = located.from_s.is_finite() && (!start.is_finite() || located.from_s > start + room);
+    let is_early = located.to_s.is_finite() && (!end.is_finite() || located.to_s < end - room);
+    let [from, to] = [located.from_s, located.to_s].map(|t| crate::number::digits(t, 3));
+    match (is_late, is_early) {
+        (false, false) => "throughout".to_owned(),
+        (true, false) => format!("from {from} s on"),
+        (false, true) => format!("until {to} s"),
+        (true, true) => format!("from {from} s to {to} s"),
+    }
+}
+
+fn explanation(diagnosis: &Diagnosis) -> Option<String> {
+    let effects: Vec<String> = diagnosis.effects.iter().map(effect_words).collect();
+    let list = join(&effects);
+    match (diagnosis.verdict, effects.is_empty()) {
+        (Verdict::NoMismatch, _) => None,
+        (Verdict::Explained, false) => Some(format!("It is explained by {list}.")),
+        (Verdict::PartlyExplained, false) => Some(format!(
+            "A part of it is explained by {list}; a significant part remains that no effect of the library explains."
+        )),
+        _ => Some(
+            "No effect of the library explains it, alone or with others; what the residual itself shows stands below."
+                .to_owned(),
+        ),
+    }
+}
+
+/// "viscous friction at joint_3 (b = 0.9012 ± 0.0011 N m s/rad)".
+pub fn effect_words(found: &Found) -> String {
+    format!("{} at {} ({})", plain_name(&found.name), place_words(&found.place), parameter_words(found))
+}
+
+/// "b = 0.9012 ± 0.0011 N m s/rad, …".
+pub fn parameter_words(found: &Found) -> String {
+    let one = |(name, value): (&String, &ParamValue)| {
+        let unit = unit(&found.name, name, false);
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        format!("{name} = {}{unit}", value_words(value, found.std_err.get(name)))
+    };
+    found.params.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// A parameter's value with its errors.
+pub fn value_words(value: &ParamValue, std_err: Option<&StdErr>) -> String {
+    let errors = std_err.map(StdErr::entries).unwrap_or_default();
+    let entry = |i: usize, x: f64| with_error(x, errors.get(i).copied().flatten().unwrap_or(f64::NAN));
+    match value {
+        ParamValue::Number(x) => entry(0, *x),
+        ParamValue::Numbers(list) => {
+            format!("[{}]", list.iter().enumerate().map(|(i, x)| entry(i, *x)).collect::<Vec<_>>().join(", "))
+        }
+        ParamValue::Text(text) => text.clone(),
+        ParamValue::Flag(flag) => flag.to_string(),
+    }
+}
+
+fn improvement(diagnosis: &Diagnosis) -> Option<String> {
+    if diagnosis.effects.is_empty() {
+        return None;
+    }
+    let error = &diagnosis.error;
+    let (judged, whose) = match error.holdout {
+        Some(holdout) => (holdout, "on the runs that were not used"),
+        None => (error.fit, "on the runs that were used"),
+    };
+    let what = if diagnosis.effects.len() == 1 { "it" } else { "them" };
+    let windows = format!(
+        "restarted every {} s: from {} to {}",
+        crate::number::short(error.window_s),
+        noise(error.windowed.before),
+        noise(error.windowed.after)
+    );
+    Some(format!(
+        "With {what} in the model, the error {whose} falls from {} to {} times the noise ({windows}).",
+        noise(judged.before),
+        noise(judged.after)
+    ))
+}
+
+/// What the data do not decide.
+fn doubts(diagnosis: &Diagnosis) -> Option<String> {
+    let near = |found: &Found| {
+        let rivals = found.rivals.iter().filter(|r| r.score_gap < UNDECIDED);
+        let rivals: Vec<String> =
+            rivals.map(|r| format!("{} at {}", plain_name(&r.name), place_words(&r.place))).collect();
+        (!rivals.is_empty()).then(|| {
+            let or = rivals.join(" or ");
+            format!("The data do not decide between {} and {or}.", plain_name(&found.name))
+        })
+    };
+    let said: Vec<String> = diagnosis.effects.iter().filter_map(near).collect();
+    if !said.is_empty() {
+        return Some(said.join(" "));
+    }
+    let rivals = || diagnosis.effects.iter().flat_map(|e| &e.rivals);
+    let nearest = rivals().min_by(|a, b| a.score_gap.total_cmp(&b.score_gap))?;
+    Some(format!(
+        "The nearest other explanation, {} at {}, is worse by {} in the information criterion (10 is decisive).",
+        plain_name(&nearest.name),
+        place_words(&nearest.place),
+        crate::number::digits(nearest.score_gap, 2)
+    ))
+}
+
+fn join(parts: &[String]) -> String {
+    match parts {
+        [] => String::new(),
+        [one] => one.clone(),
+        [rest @ .., last] => format!("{} and by {last}", rest.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_and_times_are_words() {
+        assert_eq!(place_words("joint:joint_3"), "joint_3");
+        assert_eq!(place_words("joint:elbow"), "joint elbow");
+        assert_eq!(place_words("contact:probe/drogue"), "the contact of probe and drogue");
+        let heat = crate::evidence::Heat {
+            run: String::new(),
+            role: crate::diagnosis::Role::Fit,
+            window_s: None,
+            edges_s: vec![0.0, 10.0, 20.0],
+            rows: Vec::new(),
+        };
+        let evidence = Evidence { heat: vec![heat], ..Evidence::default() };
+        let located =
+            |from_s, to_s| Located { place: "world".into(), share: 1.0, from_s, to_s, condition: String::new() };
+        assert_eq!(when_words(&located(0.1, 20.0), &evidence), "throughout");
+        assert_eq!(when_words(&located(12.4, 20.0), &evidence), "from 12.4 s on");
+        assert_eq!(when_words(&located(0.0, 5.0), &evidence), "until 5 s");
+        assert_eq!(when_words(&located(3.0, 5.0), &evidence), "from 3 s to 5 s");
+    }
+}

@@ -1,0 +1,144 @@
+//! Names of channels by the recording format: `<family>.<subject>.<quantity>[.<component>]`.
+
+use super::units::Dimension;
+
+/// What a channel measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// Encoder of a joint, rad or m.
+    JointPosition,
+    /// Rate of a joint, rad/s or m/s.
+    JointVelocity,
+    /// What the controller asked of a drive, N·m or N.
+    JointEffortCommand,
+    /// Torque sensor of a joint, N·m or N.
+    JointEffort,
+    /// Origin of a body in the world, m.
+    BodyPosition,
+    /// Quaternion that rotates body vectors into the world.
+    BodyOrientation,
+    /// Velocity of the origin in the world frame, m/s.
+    BodyLinearVelocity,
+    /// Gyro: angular velocity in the body frame, rad/s.
+    BodyAngularVelocity,
+    /// Force in the sensor's frame on the sensed side, N.
+    SensorForce,
+    /// Torque likewise, N·m.
+    SensorTorque,
+    /// Valve, wheel torque, gripper force.
+    ActuatorCommand,
+    /// Prescribed motion of a driven part, m.
+    DrivePosition,
+}
+
+/// Family, name of the quantity in files, number of components (1: a scalar), what it is.
+const TABLE: [(&str, &str, &[&str], Quantity); 12] = [
+    ("joint", "position", &[], Quantity::JointPosition),
+    ("joint", "velocity", &[], Quantity::JointVelocity),
+    ("joint", "effort_command", &[], Quantity::JointEffortCommand),
+    ("joint", "effort", &[], Quantity::JointEffort),
+    ("body", "position", &XYZ, Quantity::BodyPosition),
+    ("body", "orientation", &WXYZ, Quantity::BodyOrientation),
+    ("body", "linear_velocity", &XYZ, Quantity::BodyLinearVelocity),
+    ("body", "angular_velocity", &XYZ, Quantity::BodyAngularVelocity),
+    ("sensor", "force", &XYZ, Quantity::SensorForce),
+    ("sensor", "torque", &XYZ, Quantity::SensorTorque),
+    ("actuator", "command", &[], Quantity::ActuatorCommand),
+    ("drive", "position", &XYZ, Quantity::DrivePosition),
+];
+const XYZ: [&str; 3] = ["x", "y", "z"];
+const WXYZ: [&str; 4] = ["w", "x", "y", "z"];
+
+impl Quantity {
+    /// What its unit may measure: a joint turns or slides.
+    pub fn dimensions(self) -> &'static [Dimension] {
+        match self {
+            Self::JointPosition => &[Dimension::Angle, Dimension::Length],
+            Self::JointVelocity => &[Dimension::Rate, Dimension::Speed],
+            Self::JointEffortCommand | Self::JointEffort => &[Dimension::Torque, Dimension::Force],
+            Self::BodyPosition | Self::DrivePosition => &[Dimension::Length],
+            Self::BodyOrientation => &[Dimension::Number],
+            Self::BodyLinearVelocity => &[Dimension::Speed],
+            Self::BodyAngularVelocity => &[Dimension::Rate],
+            Self::SensorForce => &[Dimension::Force],
+            Self::SensorTorque => &[Dimension::Torque],
+            Self::ActuatorCommand => &[Dimension::Force, Dimension::Torque, Dimension::Number],
+        }
+    }
+
+    /// SI unit as printed, both where a joint may turn or slide.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::JointPosition => "rad|m",
+            Self::JointVelocity => "rad/s|m/s",
+            Self::JointEffortCommand | Self::JointEffort => "N·m|N",
+            Self::ActuatorCommand => "",
+            _ => self.dimensions()[0].si(),
+        }
+    }
+
+    /// Whether it was asked for and not measured: it has no noise.
+    pub fn is_command(self) -> bool {
+        matches!(self, Self::JointEffortCommand | Self::ActuatorCommand)
+    }
+}
+
+/// A channel's name, taken apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChannelName<'a> {
+    /// Joint, body, sensor, actuator or drive.
+    pub subject: &'a str,
+    /// What is measured.
+    pub quantity: Quantity,
+    /// `x`, `y`, `z`, of a quaternion `w` too; empty for a scalar.
+    pub component: &'a str,
+    /// The name without its component.
+    pub prefix: &'a str,
+}
+
+impl<'a> ChannelName<'a> {
+    /// Takes a name apart; none if the format does not know it.
+    pub fn parse(name: &'a str) -> Option<Self> {
+        TABLE.iter().find_map(|(family, quantity, components, what)| {
+            let inside = name.strip_prefix(family)?.strip_prefix('.')?;
+            let (head, component) = match components.is_empty() {
+                true => (inside, ""),
+                false => inside.rsplit_once('.').filter(|(_, last)| components.contains(last))?,
+            };
+            let subject = head.strip_suffix(quantity)?.strip_suffix('.').filter(|subject| !subject.is_empty())?;
+            let cut = if component.is_empty() { 0 } else { component.len() + 1 };
+            Some(Self { subject, quantity: *what, component, prefix: &name[..name.len() - cut] })
+        })
+    }
+
+    /// Family of the channel: `joint`, `body`, …
+    pub fn family(&self) -> &'a str {
+        self.prefix.split('.').next().unwrap_or_default()
+    }
+}
+
+/// All forms of channel names, for messages.
+pub(super) fn forms() -> Vec<String> {
+    let form = |(family, quantity, components, _): &(&str, &str, &[&str], Quantity)| match components.is_empty() {
+        true => format!("{family}.<{family}>.{quantity}"),
+        false => format!("{family}.<{family}>.{quantity}.{{{}}}", components.join(",")),
+    };
+    TABLE.iter().map(form).collect()
+}
+
+/// What an unknown name was probably meant to be: each of its parts replaced by the nearest valid one.
+pub(super) fn meant(name: &str) -> Option<String> {
+    let parts: Vec<&str> = name.split('.').collect();
+    let (first, rest) = parts.split_first()?;
+    let family = super::spelling::nearest(first, TABLE.iter().map(|row| row.0))?;
+    let (component, middle) = match rest.split_last()? {
+        (last, before) if WXYZ.contains(&last.to_lowercase().as_str()) => (last.to_lowercase(), before),
+        _ => (String::new(), rest),
+    };
+    let (quantity, subject) = middle.split_last()?;
+    let known = TABLE.iter().filter(|row| row.0 == family && row.2.is_empty() == component.is_empty());
+    let quantity = super::spelling::nearest(quantity, known.map(|row| row.1))?;
+    let tail = if component.is_empty() { String::new() } else { format!(".{component}") };
+    let guess = format!("{family}.{}.{quantity}{tail}", subject.join("."));
+    ChannelName::parse(&guess).is_some().then_some(guess)
+}

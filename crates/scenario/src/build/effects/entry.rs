@@ -1,0 +1,163 @@
+//! One `[[effect]]` entry, held against the catalogue: name, kind of place, parameters and their ranges.
+
+use crate::build::faults::Faults;
+use crate::effects::{EffectName, Neutral, Parameter, PlaceKind, Shape};
+use crate::spec::{Effect, ParamValue};
+use spatial::Vec3;
+
+/// An effect whose name, kind of place and parameters are sound.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::build) struct Entry<'a> {
+    /// Index into the file's effects.
+    index: usize,
+    pub(super) name: EffectName,
+    /// Kind of its place.
+    pub(super) kind: PlaceKind,
+    /// What stands behind the colon.
+    pub(super) place: &'a str,
+    spec: &'a Effect,
+}
+
+impl<'a> Entry<'a> {
+    /// The entry, if it is sound; else its faults are told.
+    pub(super) fn check(index: usize, spec: &'a Effect, faults: &mut Faults<'_>) -> Option<Self> {
+        let key = |k: &str| format!("effect[{index}].{k}");
+        let Some(name) = EffectName::parse(&spec.name) else {
+            let valid = EffectName::ALL.iter().map(|n| n.text());
+            faults.unknown(&key("name"), "effect", &spec.name, valid);
+            return None;
+        };
+        let places = name.entry().places;
+        let (kind, place) = spec.place.split_once(':').unwrap_or((&spec.place, ""));
+        let Some(kind) = places.iter().copied().find(|p| p.text() == kind) else {
+            let valid = places.iter().map(|p| p.text()).collect::<Vec<_>>().join(" or ");
+            faults.add(&key("place"), format!("{name} acts at a {valid}, not at \"{}\"", spec.place));
+            return None;
+        };
+        let entry = Self { index, name, kind, place, spec };
+        entry.check_parameters(faults).then_some(entry)
+    }
+
+    fn check_parameters(&self, faults: &mut Faults<'_>) -> bool {
+        let parameters = self.name.entry().parameters;
+        let mut sound = true;
+        for name in self.spec.params.keys().filter(|k| !parameters.iter().any(|p| p.name == k.as_str())) {
+            let valid = parameters.iter().map(|p| p.name);
+            faults.unknown(&self.key(name), &format!("parameter of {}", self.name), name, valid);
+            sound = false;
+        }
+        for parameter in parameters {
+            let fault = match self.spec.params.get(parameter.name) {
+                Some(value) => find_fault(parameter, value),
+                None if parameter.is_required => Some(format!("is missing: {} needs it", self.name)),
+                None => None,
+            };
+            if let Some(fault) = fault {
+                faults.add(&self.key(parameter.name), fault);
+                sound = false;
+            }
+        }
+        sound
+    }
+
+    /// Path of a parameter or of "place" in the file.
+    pub(super) fn key(&self, name: &str) -> String {
+        format!("effect[{}].{name}", self.index)
+    }
+
+    /// Complains about the effect at its place.
+    pub(super) fn fault(&self, faults: &mut Faults<'_>, reason: &str) {
+        faults.add(&self.key("place"), format!("{} {reason}", self.name));
+    }
+
+    /// For effects that are read and not simulated yet.
+    pub(super) fn not_yet(&self, faults: &mut Faults<'_>) {
+        faults.add(&self.key("name"), format!("{} is not simulated yet; remove the entry", self.name));
+    }
+
+    /// For messages of the simulation.
+    pub(super) fn title(&self) -> String {
+        format!("{} at {}", self.name, self.spec.place)
+    }
+
+    /// A number; where the file gives none, the neutral value, or zero where there is none.
+    pub(super) fn number(&self, name: &str) -> f64 {
+        self.given(name).unwrap_or_else(|| self.neutral(name))
+    }
+
+    /// A number, where the file gives it.
+    pub(super) fn given(&self, name: &str) -> Option<f64> {
+        self.spec.params.get(name).and_then(ParamValue::number)
+    }
+
+    /// A vector; one number is along no axis and stands for (x, x, x) of nothing: see [`Entry::numbers`].
+    pub(super) fn vector(&self, name: &str) -> Vec3 {
+        match self.numbers(name) {
+            Some([x, y, z]) => Vec3::new(*x, *y, *z),
+            _ => Vec3::repeat(self.neutral(name)),
+        }
+    }
+
+    /// The numbers that the file gives.
+    pub(super) fn numbers(&self, name: &str) -> Option<&'a [f64]> {
+        self.spec.params.get(name).and_then(ParamValue::numbers)
+    }
+
+    /// The word of a choice; its first where the file gives none.
+    pub(super) fn word(&self, name: &str) -> &'a str {
+        let default = match self.name.entry().parameter(name).map(|p| p.shape) {
+            Some(Shape::Choice([first, ..])) => *first,
+            _ => "",
+        };
+        match self.spec.params.get(name) {
+            Some(ParamValue::Text(word)) => word,
+            _ => default,
+        }
+    }
+
+    fn neutral(&self, name: &str) -> f64 {
+        match self.name.entry().parameter(name).map(|p| p.neutral) {
+            Some(Neutral::Value(value)) => value,
+            _ => 0.0,
+        }
+    }
+}
+
+/// What is wrong with a parameter's value.
+fn find_fault(parameter: &Parameter, value: &ParamValue) -> Option<String> {
+    if let Shape::Choice(words) = parameter.shape {
+        let found = matches!(value, ParamValue::Text(word) if words.contains(&word.as_str()));
+        return (!found).then(|| format!("must be one of \"{}\"", words.join("\", \"")));
+    }
+    let lengths: &[usize] = match parameter.shape {
+        Shape::Number => &[1],
+        Shape::Vector => &[3],
+        Shape::Tensor => &[6],
+        _ => &[1, 3],
+    };
+    let numbers = value.numbers().unwrap_or(&[]);
+    let is_list = matches!(value, ParamValue::Numbers(_));
+    if !lengths.contains(&numbers.len()) || (is_list && parameter.shape == Shape::Number) {
+        let what = match parameter.shape {
+            Shape::Number => "a number",
+            Shape::Vector => "three numbers",
+            Shape::Tensor => "six numbers: xx, yy, zz, xy, xz, yz",
+            _ => "a number or three",
+        };
+        return Some(format!("must be {what}"));
+    }
+    numbers.iter().find_map(|x| find_range_fault(parameter, *x))
+}
+
+fn find_range_fault(parameter: &Parameter, x: f64) -> Option<String> {
+    let ([low, high], is_neutral) = (parameter.range, parameter.neutral == Neutral::Value(x));
+    if is_neutral || (x.is_finite() && (low..=high).contains(&x)) {
+        return None;
+    }
+    let demand = match low {
+        f64::MIN_POSITIVE => "must be a finite number above zero".to_owned(),
+        0.0 => "must be a finite number of at least zero".to_owned(),
+        _ => "must be a finite number".to_owned(),
+    };
+    Some(format!("= {x} {demand}"))
+}

@@ -1,0 +1,187 @@
+//! Efforts on one joint coordinate: friction, cables, ripple, disturbances.
+//!
+//! | law | effort, N·m or N |
+//! | --- | --- |
+//! | viscous | −b q̇ |
+//! | dry | −(g/z₀)(z + t_d ż e^(−(q̇/v_d)²)),  ż = q̇ − |q̇| z/z₀ |
+//! | ripple | A sin(n q + φ) |
+//! | cable | −k (q − q_rest) |
+//! | periodic | A sin(2π f t + φ) |
+//!
+//! Dry friction is Dahl's (1968), with z₀ = 3e-4 rad or m, t_d = 2 ms, v_d = 0.02 rad/s or m/s, and the level g constant,
+//! falling with speed, or of two values by the sign of z. Divided by q̇, its equation loses the time:
+//!   dz/dq = 1 − σ z/z₀,  σ = sign q̇,   so   z = σ z₀ + (z_a − σ z₀) e^(−|q − q_a|/z₀)   while the direction holds.
+//! The deflection of every stage is therefore taken from the displacement since the step's start, exactly; a reversal
+//! within the step is placed by a linear rate between its ends. Integrated as a rate, z would be stiff (|q̇|/z₀ is
+//! 3,000 /s at 1 rad/s); so it is bounded at any step, and the law is as smooth in q as the motion lets it be.
+
+use crate::actuator::CoordinatePoint;
+use std::f64::consts::TAU;
+
+/// An effort on one joint coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointEffect {
+    /// Index into `v`.
+    pub coordinate: usize,
+    /// The law.
+    pub law: JointLaw,
+}
+
+/// The laws of single coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum JointLaw {
+    /// Against the rate.
+    Viscous {
+        /// N·m·s/rad or N·s/m.
+        damping: f64,
+    },
+    /// Dahl's dry friction.
+    Dry(DryLevel),
+    /// Periodic in the position.
+    Ripple {
+        /// N·m or N.
+        amplitude: f64,
+        /// Periods per turn, or 2π/wavelength in 1/m.
+        order: f64,
+        /// rad.
+        phase: f64,
+    },
+    /// A spring to a rest position.
+    Cable {
+        /// N·m/rad or N/m.
+        stiffness: f64,
+        /// rad or m.
+        rest: f64,
+    },
+    /// Periodic in time.
+    Periodic {
+        /// N·m or N.
+        amplitude: f64,
+        /// Hz.
+        frequency: f64,
+        /// rad.
+        phase: f64,
+    },
+}
+
+/// How high dry friction is, N·m or N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DryLevel {
+    /// c.
+    Constant(f64),
+    /// c + (s − c) exp(−(q̇/v_s)²).
+    Falling {
+        /// Sliding level.
+        c: f64,
+        /// Level at rest.
+        s: f64,
+        /// rad/s or m/s.
+        v_s: f64,
+    },
+    /// By the sign of the deflection.
+    Directed {
+        /// Where z ≥ 0: against motion in the positive direction.
+        c_plus: f64,
+        /// Elsewhere.
+        c_minus: f64,
+    },
+}
+
+/// z₀: deflection at which dry friction is fully there, rad or m.
+const REACH: f64 = 3e-4;
+/// t_d: time constant of the damping of small motion, s.
+const DAMPING_TIME: f64 = 2e-3;
+/// v_d: rate beyond which that damping fades, rad/s or m/s.
+const DAMPING_RATE: f64 = 0.02;
+
+impl DryLevel {
+    fn calc(&self, z: f64, v: f64) -> f64 {
+        match *self {
+            Self::Constant(c) => c,
+            Self::Falling { c, s, v_s } => c + (s - c) * (-(v / v_s) * (v / v_s)).exp(),
+            Self::Directed { c_plus, c_minus } => {
+                if z >= 0.0 {
+                    c_plus
+                } else {
+                    c_minus
+                }
+            }
+        }
+    }
+
+    /// Effort and −∂effort/∂v' at the deflection z; β and θ say how z and v depend on the new rate v'.
+    fn eval(&self, z: f64, v: f64, beta: f64, theta: f64) -> (f64, f64) {
+        let fade = DAMPING_TIME * (-(v / DAMPING_RATE) * (v / DAMPING_RATE)).exp();
+        let stiffness = self.calc(z, v) / REACH;
+        let open = 1.0 - v.signum() * z / REACH;
+        (-stiffness * (z + fade * v * open), (stiffness * open * (beta + fade * theta)).max(0.0))
+    }
+}
+
+/// Deflection after the displacement of a law's point from the start of the step, where it was `z`.
+fn calc_deflection(z: f64, at: &CoordinatePoint, moved: f64, v: f64) -> f64 {
+    if let Some((v_start, elapsed)) = at.from
+        && v_start * v < 0.0
+    {
+        // The rate goes linearly through zero: so far out, and the rest of the way back.
+        let out = 0.5 * v_start * elapsed * (v_start / (v_start - v));
+        return drag(drag(z, out), moved - out);
+    }
+    drag(z, moved)
+}
+
+/// Deflection after a displacement in one direction.
+fn drag(z: f64, moved: f64) -> f64 {
+    let end = REACH.copysign(moved);
+    end + (z - end) * (-moved.abs() / REACH).exp()
+}
+
+impl JointEffect {
+    pub(super) fn memory_names(&self) -> &'static [&'static str] {
+        if matches!(self.law, JointLaw::Dry(_)) { &["deflection"] } else { &[] }
+    }
+
+    /// Effort and −∂effort/∂v' at position `q` and rate `v`, which `at` places for the new rate `v_new`.
+    pub(crate) fn eval(
+        &self,
+        (at, v_new): (&CoordinatePoint, f64),
+        (q, v): (f64, f64),
+        memory: &[f64],
+        time: f64,
+    ) -> (f64, f64) {
+        match self.law {
+            JointLaw::Viscous { damping } => (-damping * v, damping * at.theta),
+            JointLaw::Dry(level) => {
+                let z = calc_deflection(memory[0], at, at.moved_base + at.beta * v_new, v);
+                level.eval(z, v, at.beta, at.theta)
+            }
+            JointLaw::Ripple { amplitude, order, phase } => {
+                let (sin, cos) = (order * q + phase).sin_cos();
+                // Only the restoring half of a wave may enter the matrix, which stays positive so.
+                (amplitude * sin, (-amplitude * order * cos * at.beta).max(0.0))
+            }
+            JointLaw::Cable { stiffness, rest } => (-stiffness * (q - rest), stiffness * at.beta),
+            JointLaw::Periodic { amplitude, frequency, phase } => {
+                (amplitude * (TAU * frequency * time + phase).sin(), 0.0)
+            }
+        }
+    }
+
+    /// Takes the deflection over the accepted step.
+    pub(super) fn commit(&self, at: &CoordinatePoint, v: f64, memory: &mut [f64]) {
+        if let [z] = memory {
+            *z = calc_deflection(*z, at, at.moved_base, v);
+        }
+    }
+
+    /// What its spring holds, J.
+    pub(super) fn calc_energy(&self, q: f64) -> f64 {
+        match self.law {
+            JointLaw::Cable { stiffness, rest } => 0.5 * stiffness * (q - rest) * (q - rest),
+            JointLaw::Ripple { amplitude, order, phase } if order != 0.0 => {
+                amplitude / order * (order * q + phase).cos()
+            }
+            _ => 0.0,
+        }
+    }
+}

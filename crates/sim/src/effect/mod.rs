@@ -1,0 +1,237 @@
+//! Effects: physics that a nominal model leaves out, each a small law with a place.
+//!
+//! What an effect may do to a step, and where:
+//!
+//! | hook | meaning | called by |
+//! | --- | --- | --- |
+//! | [`add_wrenches`] | forces on bodies; they join the external ones, so that momentum and energy stay audited | every evaluation of forces |
+//! | [`crate::Coordinate`] | efforts on one joint coordinate, with their slope for the implicit solve | every evaluation of a coordinate |
+//! | [`write_rates`] | rates of memory that Runge–Kutta integrates with everything else | every stage |
+//! | [`advance`] | memory over a whole step of the one-solve schemes | after their solve |
+//! | [`commit`] | memory that follows exactly from what an accepted step did, whatever the integrator | the end of a step |
+//!
+//! Memory stands in [`State::effects`], one stretch per effect in the model's order; it is zero where everything is at
+//! rest and unloaded. What depends on the first commands (a loaded gear, a lagging drive) is set by [`settle`], once,
+//! when the first step begins: at rest under those commands.
+//! A world without effects pays one comparison per hook.
+
+mod joint;
+mod line;
+mod series;
+
+pub use joint::{DryLevel, JointEffect, JointLaw};
+pub use line::{LineEffect, LineLaw};
+pub use series::Series;
+
+pub(crate) use line::{Lines, accept, next_switch};
+
+use crate::actuator::{Coordinate, CoordinatePoint};
+use crate::error::ModelError;
+use crate::model::Model;
+use crate::state::State;
+use crate::step::Scheme;
+use crate::workspace::Workspace;
+use std::ops::Range;
+
+/// Physics beyond the nominal model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effect {
+    /// For messages: its name and place.
+    pub name: String,
+    /// What it does.
+    pub kind: EffectKind,
+}
+
+/// The families of effects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EffectKind {
+    /// An effort on one joint coordinate.
+    Joint(JointEffect),
+    /// A gear that yields or has play, between a drive and its joint.
+    Series(Series),
+    /// What happens to a command on its way to the actuator's output.
+    Line(LineEffect),
+}
+
+impl EffectKind {
+    /// What its memory holds, one name each; empty for an effect without memory.
+    pub fn memory_names(&self) -> &'static [&'static str] {
+        match self {
+            Self::Joint(effect) => effect.memory_names(),
+            Self::Series(_) => &["deflection", "deflection_rate"],
+            Self::Line(effect) => effect.memory_names(),
+        }
+    }
+}
+
+/// Effects of a model, with what was worked out at its build.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Effects {
+    pub list: Vec<Effect>,
+    /// First memory of each effect, and the number of all.
+    starts: Vec<usize>,
+    pub lines: Lines,
+    /// Whether an effect's memory has rates or is advanced by a step.
+    has_motion: bool,
+}
+
+impl Effects {
+    /// Numbers the memory, and hands efforts and gears to their coordinates.
+    pub fn build(list: Vec<Effect>, model: &mut Model) -> Result<Self, ModelError> {
+        let mut starts = vec![0];
+        for effect in &list {
+            starts.push(starts[starts.len() - 1] + effect.kind.memory_names().len());
+        }
+        let lines = Lines::new(model.actuators.len());
+        let has_motion = list.iter().any(|e| matches!(e.kind, EffectKind::Series(_)));
+        let mut effects = Self { list, starts, lines, has_motion };
+        for index in 0..effects.list.len() {
+            effects.attach(index, model)?;
+        }
+        Ok(effects)
+    }
+
+    fn attach(&mut self, index: usize, model: &mut Model) -> Result<(), ModelError> {
+        let Effect { name, kind } = &self.list[index];
+        let refuse = |fault: &str| ModelError::Effect { name: name.clone(), fault: fault.to_owned() };
+        match kind {
+            EffectKind::Joint(effect) => {
+                coordinate_of(model, effect.coordinate).ok_or_else(|| refuse(NO_COORDINATE))?.effects.push(index);
+            }
+            EffectKind::Series(series) => {
+                let coordinate = coordinate_of(model, series.coordinate).ok_or_else(|| refuse(NO_COORDINATE))?;
+                if coordinate.series.replace(index).is_some() {
+                    return Err(refuse("the joint has a gear already; give it elasticity or backlash, not both"));
+                }
+                series.find_fault().map_or(Ok(()), |fault| Err(refuse(&fault)))?;
+            }
+            EffectKind::Line(line) => {
+                self.lines.attach(line, self.starts[index], &model.actuators).map_err(|fault| refuse(&fault))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Where the memory of an effect stands in [`State::effects`].
+    pub fn memory(&self, index: usize) -> Range<usize> {
+        self.starts[index]..self.starts[index + 1]
+    }
+
+    /// How many numbers all effects remember.
+    pub fn n_memory(&self) -> usize {
+        self.starts.last().copied().unwrap_or(0)
+    }
+}
+
+const NO_COORDINATE: &str = "needs a revolute or prismatic joint that follows no other";
+
+fn coordinate_of(model: &mut Model, coordinate: usize) -> Option<&mut Coordinate> {
+    model.coordinates.get_mut(coordinate).filter(|c| c.is_scalar)
+}
+
+/// What a coordinate's law reads of the world beside its own position and rate.
+#[derive(Clone, Copy)]
+pub(crate) struct Acting<'a> {
+    pub model: &'a Model,
+    pub state: &'a State,
+    /// Length of the step, s.
+    pub step: f64,
+    /// Time since the step's start of an explicit stage, s; none where one evaluation stands for the whole step.
+    pub since: Option<f64>,
+}
+
+impl Acting<'_> {
+    /// Memory of an effect.
+    pub fn memory(&self, index: usize) -> &[f64] {
+        &self.state.effects[self.model.effects.memory(index)]
+    }
+}
+
+/// Adds what effects do to the bodies, about their vehicles' anchors, W axes.
+pub(crate) fn add_wrenches(model: &Model, _state: &State, _ws: &mut Workspace) {
+    for effect in &model.effects.list {
+        match effect.kind {
+            EffectKind::Joint(_) | EffectKind::Series(_) | EffectKind::Line(_) => {}
+        }
+    }
+}
+
+/// Rates of the memory at a stage of Runge–Kutta, whose accelerations `ws.v_gain` and `ws.dvel` hold (per second).
+pub(crate) fn write_rates(model: &Model, state: &State, ws: &Workspace, rates: &mut [f64]) {
+    if !model.effects.has_motion {
+        return;
+    }
+    for (index, effect) in model.effects.list.iter().enumerate() {
+        let at = model.effects.memory(index);
+        match &effect.kind {
+            EffectKind::Joint(_) | EffectKind::Line(_) => {}
+            EffectKind::Series(series) => {
+                let (force, v_dot) = (&ws.coordinate_forces[series.coordinate], ws.v_gain[series.coordinate]);
+                series.write_rates(&state.effects[at.clone()], force, v_dot, &mut rates[at]);
+            }
+        }
+    }
+}
+
+/// Memory over a step of a one-solve scheme, once the gains are known and before anything has moved.
+pub(crate) fn advance(model: &Model, state: &mut State, ws: &Workspace, scheme: Scheme) {
+    if !model.effects.has_motion {
+        return;
+    }
+    for (index, effect) in model.effects.list.iter().enumerate() {
+        if let EffectKind::Series(series) = &effect.kind {
+            let i = series.coordinate;
+            let acting = Acting { model, state, step: ws.step, since: None };
+            let (point, v_new) = (&ws.coordinate_points[i], state.v[i] + ws.v_gain[i]);
+            let next = series.advance(point, v_new, &acting, index, scheme);
+            state.effects[model.effects.memory(index)].copy_from_slice(&next);
+        }
+    }
+}
+
+/// Memory that follows from the displacements of the accepted step; `state` is its end.
+pub(crate) fn commit(model: &Model, state: &mut State, ws: &Workspace) {
+    for (index, effect) in model.effects.list.iter().enumerate() {
+        let at = model.effects.memory(index);
+        match &effect.kind {
+            EffectKind::Joint(joint) => {
+                let i = joint.coordinate;
+                let moved = state.q[model.coordinates[i].q_index] - ws.q_start[model.coordinates[i].q_index];
+                let end = CoordinatePoint::at_end(moved, &ws.coordinate_points[i], ws.step);
+                joint.commit(&end, state.v[i], &mut state.effects[at]);
+            }
+            EffectKind::Line(line) if !at.is_empty() => {
+                let acting = Acting { model, state, step: ws.step, since: None };
+                let end = line.calc_lagged(&acting, state.effects[at.start]);
+                state.effects[at.start] = end;
+            }
+            EffectKind::Line(_) | EffectKind::Series(_) => {}
+        }
+    }
+}
+
+/// Puts the memory that the first commands decide to rest under them: gears carry the drives' efforts, lags have passed.
+pub(crate) fn settle(model: &Model, state: &mut State) {
+    for (index, effect) in model.effects.list.iter().enumerate() {
+        let acting = Acting { model, state, step: model.step, since: None };
+        let at = model.effects.memory(index);
+        let rest = match &effect.kind {
+            EffectKind::Series(series) => series.calc_rest(&acting),
+            EffectKind::Line(line) if !at.is_empty() => line.calc_demand(&acting),
+            EffectKind::Line(_) | EffectKind::Joint(_) => continue,
+        };
+        state.effects[at.start] = rest;
+    }
+}
+
+/// Energy that effects hold, J: in springs, and in the rotors behind them.
+pub(crate) fn calc_energy(model: &Model, state: &State) -> f64 {
+    let of = |(index, effect): (usize, &Effect)| match &effect.kind {
+        EffectKind::Joint(joint) => joint.calc_energy(state.q[model.coordinates[joint.coordinate].q_index]),
+        EffectKind::Series(series) => {
+            series.calc_energy(&state.effects[model.effects.memory(index)], state.v[series.coordinate])
+        }
+        EffectKind::Line(_) => 0.0,
+    };
+    model.effects.list.iter().enumerate().map(of).sum()
+}
