@@ -66,7 +66,8 @@ impl Bristle {
         if !self.levels().is_constant() {
             return None;
         }
-        let holds = |s: &Vector3<f64>, normal_force: f64| self.ellipse(self.mu_static, normal_force, grain).hold(s).inside;
+        let holds =
+            |s: &Vector3<f64>, normal_force: f64| self.ellipse(self.mu_static, normal_force, grain).hold(s).inside;
         let [half, all] = path.calc_slipped();
         let [start, middle, end] = path.normal_force;
         let sticks = start > 0.0 && holds(s, start) && holds(&(s + half), middle) && holds(&(s + all), end);
@@ -212,6 +213,8 @@ mod tests {
         let path = SlipPath { slip, normal_force: [100.0; 3], elapsed: 6e-3 };
         let stuck = LAW.stick(&Vector3::zeros(), &Vector3::zeros(), &path).expect("far inside");
         assert!((stuck.x - 8e-6).abs() < 1e-20);
-        assert!(LAW.stick(&Vector3::zeros(), &Vector3::zeros(), &SlipPath { normal_force: [1.0; 3], ..path }).is_none());
+        assert!(
+            LAW.stick(&Vector3::zeros(), &Vector3::zeros(), &SlipPath { normal_force: [1.0; 3], ..path }).is_none()
+        );
     }
 }

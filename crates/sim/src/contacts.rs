@@ -14,6 +14,7 @@
 //! and G = −h ∂f/∂u', symmetric and positive semidefinite, is what the solver adds to the mass matrix. The dependence of
 //! friction on the normal force is left to the next pass.
 
+use crate::dead_weight;
 use crate::model::{Model, PairLaw};
 use crate::state::{ContactMemory, State};
 use crate::workspace::Workspace;
@@ -224,8 +225,11 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
     if model.scene.pairs().is_empty() {
         return;
     }
-    update_reach(model, ws, h);
-    ws.detector.detect(&model.scene, &ws.frames, &ws.reach, &mut ws.points);
+    if model.dead_weights.len() < model.scene.pairs().len() {
+        update_reach(model, ws, h);
+        ws.detector.detect(&model.scene, &ws.frames, &ws.reach, &mut ws.points);
+    }
+    dead_weight::add_points(model, ws);
     for i in 0..ws.points.len() {
         let contact = ws.points[i];
         let (body_a, body_b) = model.pair_bodies(contact.pair as usize);

@@ -8,15 +8,16 @@
 
 use crate::actuator::CoordinatePoint;
 use crate::contacts::{Touch, Turned, find_memory, find_touches};
+use crate::drive;
 use crate::effect::{self, Acting};
 use crate::mechanism;
 use crate::model::Model;
 use crate::pivots;
+use crate::rk4_bristle::{self, Stage, Track};
 use crate::solve;
 use crate::state::{Account, ContactMemory, State};
 use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
 use crate::workspace::Workspace;
-use crate::rk4_bristle::{self, Stage, Track};
 use friction::{BrushRate, Trial, carry};
 use spatial::{Mat3, Twist, Vec3, Wrench, log_rotation, rotation_rate_of_vector};
 
@@ -113,6 +114,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     }
     let from = From { start: &rk.start, rate: &rk.sum, slots: &rk.slots };
     place(model, state, &mut ws.displacement, &from, h);
+    drive::place(model, state, ws.end);
     state.account.add_scaled(&rk.sum.account, h);
     rk4_bristle::place_at_the_end(model, &rk.tracks, &mut state.bristles);
     ws.rk = rk;
@@ -180,6 +182,7 @@ fn place(model: &Model, state: &mut State, displacement: &mut [f64], from: &From
         vehicle.tree.retract(&mut state.q[vehicle.q_range()], xi);
     }
     state.v.iter_mut().zip(&rate.v).for_each(|(v, r)| *v += r * k);
+    drive::place(model, state, state.time);
     state.effects.iter_mut().zip(&rate.effects).for_each(|(x, r)| *x += r * k);
     state.bristles.clear();
     let moved = slots.iter().zip(&rate.s).map(|(slot, r)| ContactMemory { s_w: slot.s_w + r * k, ..*slot });
@@ -195,8 +198,11 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     pivots::eval_explicit(model, ws, state.time - rk.start.time);
     eval_coordinates(model, state, ws, rk);
     calc_external(model, state, ws);
-    // Bases move by their momentum: accelerations are for joints, and for effects that follow them.
-    if model.nv() > 0 || !model.effects.list.is_empty() {
+    for drive in &model.drives {
+        ws.base_acceleration[drive.vehicle] = drive.calc_motion(state.time).acceleration;
+    }
+    // Bases move by their momentum; accelerations are those of joints alone.
+    if model.nv() > 0 {
         calc_bias(model, state, ws, false);
         if solve::factor(model, ws, 1.0) {
             solve::solve(model, ws, 1.0);
@@ -204,9 +210,9 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
             ws.v_gain.fill(f64::NAN);
         }
         rk.rate.v.copy_from_slice(&ws.v_gain);
-        effect::write_rates(model, state, ws, &mut rk.rate.effects);
         state.work.solves += 1;
     }
+    effect::write_rates(model, state, ws, &mut rk.rate.effects);
     state.work.rate_evaluations += 1;
     ws.v_gain.fill(0.0);
     ws.dvel.fill(Twist::default());
@@ -217,6 +223,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     add_impulses(model, state, ws, 1.0);
     std::mem::swap(&mut rk.rate.momentum, &mut state.momentum);
     (rk.rate.account, state.account) = (state.account, account);
+    drive::add_rates(model, state, ws, (&rk.rate.momentum, &mut rk.rate.account), &rk.rate.v);
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let (q, v) = (vehicle.q_range(), vehicle.v_range());
         let turned = log_rotation(&(state.bases[i].rotation * rk.start.bases[i].rotation.inverse()));
@@ -267,7 +274,7 @@ fn eval_touch(model: &Model, touch: &mut Touch) -> Option<BrushRate> {
 /// Finds the touching points of the present state and evaluates their laws there; nothing advances.
 pub(crate) fn refresh_touches(model: &Model, state: &State, ws: &mut Workspace) {
     ws.frames_start.copy_from_slice(&ws.frames);
-    find_touches(model, state, ws, model.step);
+    find_touches(model, state, ws, ws.step);
     for touch in &mut ws.touches {
         eval_touch(model, touch);
     }

@@ -62,7 +62,9 @@ fn neutral_effects_on_a_contact_change_no_bit_and_a_millionth_beside_they_do() {
 fn a_part_in_its_place_changes_no_bit_and_a_micrometre_aside_it_does() {
     let nominal = run(vec![], "rk4");
     for key in ["offset", "angle"] {
-        let with = |y: f64| run(vec![effect("contact-geometry-offset", [(key, ParamValue::Numbers(vec![0.0, y, 0.0]))])], "rk4");
+        let with = |y: f64| {
+            run(vec![effect("contact-geometry-offset", [(key, ParamValue::Numbers(vec![0.0, y, 0.0]))])], "rk4")
+        };
         assert!(same_bits(&nominal, &with(0.0)) && !same_bits(&nominal, &with(1e-6)), "{key}");
     }
 }
@@ -71,7 +73,8 @@ fn a_part_in_its_place_changes_no_bit_and_a_micrometre_aside_it_does() {
 #[test]
 fn a_mount_changes_nothing_at_infinite_stiffness_and_keeps_momentum() {
     let nominal = run(vec![], "rk4");
-    let mount = |k: f64| vec![effect("mount-compliance", [("k", ParamValue::Number(k)), ("d", ParamValue::Number(260.0))])];
+    let mount =
+        |k: f64| vec![effect("mount-compliance", [("k", ParamValue::Number(k)), ("d", ParamValue::Number(260.0))])];
     assert!(same_bits(&nominal, &run(mount(f64::INFINITY), "rk4")));
     let soft = run(mount(1.6e5), "rk4");
     let total = |s: &State| s.momentum[0] + s.momentum[1];

@@ -54,7 +54,10 @@ fn check(set: &Set, rig: &Rig, spec: &scenario::Scenario, com: Vec3) {
 
 fn check_dock_impact(name: &str) {
     let Some(set) = Set::read(name) else { return };
-    let rig = Rig { mount: set.param("mount-compliance", "k").map(|k| (k[0], set.param("mount-compliance", "d").unwrap()[0])), ..DOCK_IMPACT };
+    let rig = Rig {
+        mount: set.param("mount-compliance", "k").map(|k| (k[0], set.param("mount-compliance", "d").unwrap()[0])),
+        ..DOCK_IMPACT
+    };
     let com = set.param("body-com", "com").map_or(Vec3::zeros(), |c| Vec3::from_row_slice(&c));
     check(&set, &rig, &patched(&set, "dock-impact", STEP_S[0]), com);
 }
@@ -105,7 +108,9 @@ fn tip_mass() {
 #[test]
 #[ignore = "a measurement: what the step adds, in units of noise"]
 fn steps() {
-    for (name, rig, scenario, runs) in [("dock-impact-05", &DOCK_IMPACT, "dock-impact", 6), ("air-table-03", &AIR_TABLE, "air-table", 5)] {
+    for (name, rig, scenario, runs) in
+        [("dock-impact-05", &DOCK_IMPACT, "dock-impact", 6), ("air-table-03", &AIR_TABLE, "air-table", 5)]
+    {
         let set = Set::read(name).unwrap();
         for run in &set.runs[..runs] {
             let predict = |h: f64| {
@@ -119,7 +124,12 @@ fn steps() {
             let (fine, ..) = predict(1e-5);
             for h in [1e-3, 5e-4, 2.5e-4, 1e-4] {
                 let (coarse, took, steps) = predict(h);
-                println!("{name} {} h {h:e} {:?} {took:.2} s, {:.2} µs per step", run.name, rig.differ(&coarse, &fine), 1e6 * took / steps as f64);
+                println!(
+                    "{name} {} h {h:e} {:?} {took:.2} s, {:.2} µs per step",
+                    run.name,
+                    rig.differ(&coarse, &fine),
+                    1e6 * took / steps as f64
+                );
             }
         }
     }

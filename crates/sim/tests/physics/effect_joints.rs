@@ -37,7 +37,8 @@ fn sliding_wheel_loses_c_over_i_per_second_and_sticks() {
 /// A wheel under a slow sine of effort that reverses it, for 2 s.
 fn reversing(level: DryLevel, integrator: Integrator, step: f64) -> World {
     let periodic = JointLaw::Periodic { amplitude: 3.0, frequency: 1.5, phase: 0.3 };
-    let mut world = wheel_world(&[on_joint(JointLaw::Dry(level)), on_joint(periodic)], &Setup::new(integrator).step(step));
+    let mut world =
+        wheel_world(&[on_joint(JointLaw::Dry(level)), on_joint(periodic)], &Setup::new(integrator).step(step));
     run(&mut world, (2.0 / step).round() as usize);
     world
 }
@@ -103,10 +104,8 @@ fn small_motion_about_a_rest_deflection_is_damped_by_its_micro_damping() {
 
 #[test]
 fn cable_and_ripple_give_back_what_they_take() {
-    let laws = [
-        JointLaw::Cable { stiffness: 20.0, rest: 0.4 },
-        JointLaw::Ripple { amplitude: 0.7, order: 6.0, phase: 0.2 },
-    ];
+    let laws =
+        [JointLaw::Cable { stiffness: 20.0, rest: 0.4 }, JointLaw::Ripple { amplitude: 0.7, order: 6.0, phase: 0.2 }];
     for law in laws {
         let mut world = wheel_world(&[on_joint(law)], &Setup::new(Integrator::RungeKutta4));
         world.state_mut().v[0] = 1.0;

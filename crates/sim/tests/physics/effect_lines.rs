@@ -108,8 +108,7 @@ fn thruster_with_gain_lag_and_delay_gives_their_impulse() {
     for integrator in ALL {
         let setup = Setup::new(integrator);
         let mut spec = spec(vec![(block(2.0, Vec3::repeat(0.1)), Base::Free)], &setup);
-        let kind =
-            ActuatorKind::Thruster { body: 0, position: Vec3::zeros(), direction: Vec3::x(), max_force: 0.5 };
+        let kind = ActuatorKind::Thruster { body: 0, position: Vec3::zeros(), direction: Vec3::x(), max_force: 0.5 };
         spec.actuators = vec![Actuator { name: "jet".to_owned(), kind }];
         let laws = [LineLaw::Gain(0.93), LineLaw::Lag(0.01), LineLaw::Delay(0.0042)];
         spec.effects = laws.iter().map(|law| Effect { name: format!("{law:?}"), kind: line(*law) }).collect();

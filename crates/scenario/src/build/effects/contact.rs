@@ -91,7 +91,8 @@ fn edit_bristle(entry: &Entry<'_>, law: &mut Bristle) -> Result<(), String> {
     Ok(())
 }
 
-const TWO_LEVELS: &str = "meets a contact whose level changes already: it can fall with speed or grow at rest, not both";
+const TWO_LEVELS: &str =
+    "meets a contact whose level changes already: it can fall with speed or grow at rest, not both";
 
 fn set_stiffness(law: &mut NormalLaw, k: f64, n: Option<f64>) -> Result<(), String> {
     match law {
