@@ -46,6 +46,11 @@ impl Ellipse {
         Self { along: self.along * k, across: self.across * k, ..*self }
     }
 
+    #[inline]
+    pub fn is_round(&self) -> bool {
+        self.along == self.across || self.grain == Vector3::zeros()
+    }
+
     /// What the set holds of a deflection, by its way of return.
     #[inline]
     pub fn hold(&self, s: &Vector3<f64>) -> Nearest {
@@ -57,7 +62,7 @@ impl Ellipse {
 
     /// A deflection beyond the set shortened along itself. Of the derivative only the symmetric part, which turns, is told.
     fn shortened(&self, s: &Vector3<f64>) -> Nearest {
-        if self.along == self.across || self.grain == Vector3::zeros() {
+        if self.is_round() {
             return self.nearest_on_disc(s);
         }
         let s_along = s.dot(&self.grain);
@@ -73,7 +78,7 @@ impl Ellipse {
 
     #[inline]
     pub fn nearest(&self, s: &Vector3<f64>) -> Nearest {
-        if self.along == self.across || self.grain == Vector3::zeros() {
+        if self.is_round() {
             return self.nearest_on_disc(s);
         }
         let s_along = s.dot(&self.grain);

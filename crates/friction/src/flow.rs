@@ -66,7 +66,8 @@ impl Bristle {
         if !self.levels().is_constant() {
             return None;
         }
-        let holds = |s: &Vector3<f64>, normal_force: f64| self.ellipse(self.mu_static, normal_force, grain).hold(s).inside;
+        let holds =
+            |s: &Vector3<f64>, normal_force: f64| self.ellipse(self.mu_static, normal_force, grain).hold(s).inside;
         let [half, all] = path.calc_slipped();
         let [start, middle, end] = path.normal_force;
         let sticks = start > 0.0 && holds(s, start) && holds(&(s + half), middle) && holds(&(s + all), end);
@@ -108,9 +109,8 @@ impl Ellipse {
     fn advance(&self, s: &Vector3<f64>, slip: &Vector3<f64>, dt: f64, pace: f64) -> Vector3<f64> {
         let s = self.hold(s).s;
         let free = s + slip * dt;
-        let is_round = self.along == self.across || self.grain == Vector3::zeros();
         let held = self.hold(&free);
-        if held.inside || (!is_round && self.way == Return::Nearest) {
+        if held.inside || (!self.is_round() && self.way == Return::Nearest) {
             return held.s;
         }
         let stuck = self.calc_share_inside(&s, &(free - s));
@@ -121,9 +121,11 @@ impl Ellipse {
     /// The share of the way from a deflection inside to one outside at which it meets the bound.
     fn calc_share_inside(&self, s: &Vector3<f64>, way: &Vector3<f64>) -> f64 {
         let scaled = |v: &Vector3<f64>| {
+            if self.is_round() {
+                return v / self.along;
+            }
             let along = v.dot(&self.grain);
-            let rest = v - self.grain * along;
-            self.grain * (along / self.along) + rest / if self.grain == Vector3::zeros() { self.along } else { self.across }
+            self.grain * (along / self.along) + (v - self.grain * along) / self.across
         };
         let (p, d) = (scaled(s), scaled(way));
         let (a, b, c) = (d.norm_squared(), p.dot(&d), p.norm_squared() - 1.0);
@@ -211,6 +213,8 @@ mod tests {
         let path = SlipPath { slip, normal_force: [100.0; 3], elapsed: 6e-3 };
         let stuck = LAW.stick(&Vector3::zeros(), &Vector3::zeros(), &path).expect("far inside");
         assert!((stuck.x - 8e-6).abs() < 1e-20);
-        assert!(LAW.stick(&Vector3::zeros(), &Vector3::zeros(), &SlipPath { normal_force: [1.0; 3], ..path }).is_none());
+        assert!(
+            LAW.stick(&Vector3::zeros(), &Vector3::zeros(), &SlipPath { normal_force: [1.0; 3], ..path }).is_none()
+        );
     }
 }

@@ -227,6 +227,46 @@ impl Tree {
         self.joints.len() - 1
     }
 
+    /// Adds a point mass (kg) that slides along the axes of a body near `place` (body axes, m): three joints without limits,
+    /// `name`_x to `name`_z, and a link `name` at the place, with the body's axes. The body keeps its inertia. Returns the
+    /// index of the first joint.
+    pub fn add_sliding_point(&mut self, body: usize, place: &Vec3, mass: f64, name: &str) -> usize {
+        let first = self.joints.len();
+        let mut parent = body;
+        for (k, letter) in ["x", "y", "z"].into_iter().enumerate() {
+            let pos = if k == 0 { *place } else { Vec3::zeros() };
+            self.joints.push(Joint {
+                name: format!("{name}_{letter}"),
+                kind: JointKind::Prismatic,
+                frame_pj: Frame { pos, ..Frame::identity() },
+                axis: Vec3::ith(k, 1.0),
+                column: self.n_columns(),
+                width: 1,
+                q_index: self.nq + k,
+                v_index: self.nv + k,
+                multiplier: 1.0,
+                offset: 0.0,
+                is_mimic: false,
+                position_limits: None,
+                effort_limit: f64::INFINITY,
+                velocity_limit: f64::INFINITY,
+                damping: 0.0,
+                friction: 0.0,
+                armature: 0.0,
+            });
+            let own = if k == 2 { mass } else { 0.0 };
+            let inertia = Inertia { mass: own, ..Inertia::default() };
+            self.bodies.push(Body { parent, inertia });
+            parent = self.bodies.len() - 1;
+        }
+        self.nq += 3;
+        self.nv += 3;
+        self.q_zero.extend([0.0; 3]);
+        let inertia = self.bodies[parent].inertia;
+        self.links.push(Link { name: name.to_owned(), body: parent, frame_bl: Frame::identity(), inertia });
+        first
+    }
+
     /// Number of screws: joint freedoms, mimic joints counted.
     pub fn n_columns(&self) -> usize {
         self.joints.last().map_or(0, |j| j.column + j.width)

@@ -103,6 +103,8 @@ pub struct Grain {
     pub on_b: bool,
     /// The direction, axes of the body (of W for the world).
     pub axis: Vec3,
+    /// Turn of the laid direction about the outward normal of the side it belongs to, rad.
+    pub angle: f64,
 }
 
 impl Grain {
@@ -110,7 +112,13 @@ impl Grain {
     pub(crate) fn calc_direction(&self, touch: &crate::contacts::Touch) -> Vec3 {
         let axis = if self.on_b { touch.rot_b } else { touch.rot_a } * self.axis;
         let laid = axis - touch.normal * touch.normal.dot(&axis);
-        laid.try_normalize(UPRIGHT * axis.norm()).unwrap_or_default()
+        let laid = laid.try_normalize(UPRIGHT * axis.norm()).unwrap_or_default();
+        if self.angle == 0.0 {
+            return laid;
+        }
+        let outward = if self.on_b { -touch.normal } else { touch.normal };
+        let (sin, cos) = self.angle.sin_cos();
+        laid * cos + outward.cross(&laid) * sin
     }
 }
 

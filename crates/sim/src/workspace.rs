@@ -128,7 +128,8 @@ impl Workspace {
             let base = match vehicle.base {
                 Base::Driven(k) => model.drives[k].calc_motion(state.time).twist,
                 _ => {
-                    let carried = if self.parts.has_parts { calc_carried(model, state, i, kin) } else { Wrench::default() };
+                    let carried =
+                        if self.parts.has_parts { calc_carried(model, state, i, kin) } else { Wrench::default() };
                     calc_base_twist(vehicle, kin, &state.momentum[i], &carried)
                 }
             };

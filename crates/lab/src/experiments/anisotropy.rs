@@ -71,7 +71,7 @@ fn calc_force(phi: f64) -> Vec3 {
 fn lead(phi: f64, step: f64) -> Result<(Vec3, Option<(record::Log, record::Scene)>), LabError> {
     let bristle = Bristle { mu_static: MU, mu_kinetic: MU, across: ACROSS, stiffness: 2e4, ..Bristle::default() };
     let mut law = contact_law(POINT, 1e3, bristle);
-    law.grain = Some(Grain { on_b: false, axis: Vec3::new(GRAIN.cos(), GRAIN.sin(), 0.0) });
+    law.grain = Some(Grain { on_b: false, axis: Vec3::new(GRAIN.cos(), GRAIN.sin(), 0.0), angle: 0.0 });
     let mut bench = gantry_block(EXPERIMENT.name, 1.0, law, step);
     bench.add_spring("lead_x", GANTRY[0], 1e7, 1e3);
     bench.add_spring("lead_y", GANTRY[1], 1e7, 1e3);

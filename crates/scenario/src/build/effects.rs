@@ -10,6 +10,7 @@ mod entry;
 mod inertia;
 mod joint;
 mod line;
+mod mount;
 mod places;
 mod sensor;
 
@@ -128,6 +129,10 @@ pub(super) fn edit_robots(
 
 /// Changes the parts of the world, and adds what acts in it.
 pub(super) fn apply(plan: &[Entry<'_>], parts: &mut Parts, faults: &mut Faults<'_>) {
+    // A mount numbers coordinates and bodies anew, before anything is built on them.
+    for entry in plan.iter().filter(|e| e.name == EffectName::MountCompliance) {
+        mount::add(entry, parts, faults);
+    }
     // A gear takes the whole reflected inertia of its joint, so that comes first.
     for entry in plan.iter().filter(|e| family(e.name, e.kind) == Family::Armature) {
         joint::add_armature(entry, parts, faults);

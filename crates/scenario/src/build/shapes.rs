@@ -175,7 +175,7 @@ fn law_of_pair(scenario: &Scenario, vehicles: &[VehicleSpec], a: &Named, b: &Nam
 fn grain_on(vehicles: &[VehicleSpec], shape: &Named, grain: &Grain, on_b: bool) -> sim::Grain {
     let axis = Vec3::from(grain.axis);
     let link = shape.spec.vehicle.map(|v| &vehicles[v].tree.links[shape.spec.link]);
-    sim::Grain { on_b, axis: link.map_or(axis, |l| l.frame_bl.rot * axis) }
+    sim::Grain { on_b, axis: link.map_or(axis, |l| l.frame_bl.rot * axis), angle: 0.0 }
 }
 
 /// What a shape is fixed to; all that stands still in W is one body.

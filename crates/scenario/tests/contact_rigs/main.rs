@@ -6,5 +6,6 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 mod key;
+mod neutral;
 mod replay;
 mod sets;

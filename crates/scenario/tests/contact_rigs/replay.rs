@@ -1,7 +1,7 @@
 //! Runs a world along a recording and compares, family by family, in units of the sensors' noise.
 
 use crate::key::{Run, start_of};
-use sim::{World, Command};
+use sim::{Command, World};
 use spatial::{Twist, Vec3, nalgebra};
 use std::collections::BTreeMap;
 
@@ -40,20 +40,21 @@ pub struct Rig {
     pub sigma: [f64; 5],
     pub written_to: [f64; 5],
     pub sensor: Vec3,
-    pub link: &'static str,
+    /// Stiffness and damping of an elastic mount behind which the sensor sits.
+    pub mount: Option<(f64, f64)>,
 }
 
 pub const DOCK_IMPACT: Rig = Rig {
     sigma: [1e-4, 1e-4, 1e-4, 0.5, 0.05],
     written_to: [1e-5, 1e-6, 1e-5, 0.1, 0.01],
     sensor: Vec3::new(0.8, 0.0, 0.0),
-    link: "chaser",
+    mount: None,
 };
 pub const AIR_TABLE: Rig = Rig {
     sigma: [2e-4, 5e-4, 1e-3, 0.05, f64::INFINITY],
     written_to: [1e-5, 1e-5, 1e-4, 0.01, 0.0],
     sensor: Vec3::new(0.32, 0.0, 0.0),
-    link: "chaser",
+    mount: None,
 };
 
 /// What the model says at an instant.
@@ -74,6 +75,12 @@ impl Rig {
     /// Force and moment on the chaser's part, in the sensor's frame.
     fn sense(&self, world: &mut World) -> (Vec3, Vec3) {
         world.refresh_touches();
+        if let Some((stiffness, damping)) = self.mount {
+            let (q, v) = (&world.state().q, &world.state().v);
+            let u = Vec3::new(q[0], q[1], q[2]);
+            let force = stiffness * u + damping * Vec3::new(v[0], v[1], v[2]);
+            return (force, (Vec3::new(1.1, 0.0, 0.0) + u - self.sensor).cross(&force));
+        }
         let frame = world.frame(0);
         let at = frame.point(&self.sensor);
         let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
@@ -85,12 +92,12 @@ impl Rig {
         (frame.rot.tr_mul(&force), frame.rot.tr_mul(&torque))
     }
 
-    pub fn see(&self, world: &mut World, dt: f64, wants_force: bool) -> Seen {
+    fn see(&self, world: &mut World, wants_force: bool) -> Seen {
         let mut seen = Seen::default();
         for v in 0..2 {
             let (pose, twist) = (world.state().bases[v], world.link_twist(v, 0));
-            seen.rot[v] = Quat::new(twist.ang * dt) * pose.rotation;
-            seen.pos[v] = pose.translation.vector + twist.lin * dt;
+            seen.rot[v] = pose.rotation;
+            seen.pos[v] = pose.translation.vector;
             seen.rate[v] = pose.rotation.inverse() * twist.ang;
         }
         if wants_force {
@@ -105,7 +112,11 @@ impl Rig {
         for (v, body) in ["chaser", "target"].into_iter().enumerate() {
             for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
                 errors.add("position", value(format!("body.{body}.position.{axis}")) - seen.pos[v][k], self.noise(0));
-                errors.add("gyro", value(format!("body.{body}.angular_velocity.{axis}")) - seen.rate[v][k], self.noise(2));
+                errors.add(
+                    "gyro",
+                    value(format!("body.{body}.angular_velocity.{axis}")) - seen.rate[v][k],
+                    self.noise(2),
+                );
             }
             let q = ["w", "x", "y", "z"].map(|a| value(format!("body.{body}.orientation.{a}")));
             if !q[0].is_nan() {
@@ -128,18 +139,19 @@ impl Rig {
         (0..2).for_each(|v| twists[v] = start[v].1);
         world.set_base_twists(&twists);
         let h = world.model().step;
-        let commands: Vec<_> = (1..=8).filter_map(|k| run.signals.values(&format!("actuator.thruster_{k}.command"))).collect();
+        let commands: Vec<_> =
+            (1..=8).filter_map(|k| run.signals.values(&format!("actuator.thruster_{k}.command"))).collect();
         let force = run.signals.values("sensor.probe.force.x").unwrap();
         let mut all = Vec::with_capacity(run.signals.times.len());
         for (row, t) in run.signals.times.iter().enumerate() {
-            while world.state().time + h <= t + 1e-9 {
-                world.advance().unwrap();
+            while world.state().time + h < t - 1e-9 {
+                world.advance_by(h).unwrap();
             }
+            world.advance_by(t - world.state().time).unwrap();
             for (k, column) in commands.iter().enumerate().filter(|(_, c)| !c[row].is_nan()) {
                 world.commands_mut()[k] = Command { effort: 0.5 * column[row], ..Command::default() };
             }
-            let dt = t - world.state().time;
-            all.push(self.see(world, dt, !force[row].is_nan()));
+            all.push(self.see(world, !force[row].is_nan()));
         }
         all
     }
@@ -150,5 +162,20 @@ impl Rig {
         let seen = self.predict(world, run, com);
         seen.iter().enumerate().for_each(|(row, seen)| self.compare(&mut errors, run, row, seen));
         errors
+    }
+
+    /// RMS of the difference of two predictions, in units of noise: position, attitude, rate, force, torque.
+    pub fn differ(&self, a: &[Seen], b: &[Seen]) -> [f64; 5] {
+        let mut sums = [0.0; 5];
+        for (a, b) in a.iter().zip(b) {
+            for v in 0..2 {
+                sums[0] += (a.pos[v] - b.pos[v]).norm_squared() / 2.0;
+                sums[1] += a.rot[v].angle_to(&b.rot[v]).powi(2) / 2.0;
+                sums[2] += (a.rate[v] - b.rate[v]).norm_squared() / 2.0;
+            }
+            sums[3] += (a.force - b.force).norm_squared();
+            sums[4] += (a.torque - b.torque).norm_squared();
+        }
+        std::array::from_fn(|k| (1e4 * (sums[k] / (3 * a.len()) as f64).sqrt() / self.noise(k)).round() / 1e4)
     }
 }

@@ -96,7 +96,7 @@ fn sliding_across_the_grain_is_pushed_along_the_ellipse() {
             damping: 20.0,
             ..Bristle::default()
         };
-        let grain = Grain { on_b: false, axis: Vec3::new(2.0, 0.0, 0.3) };
+        let grain = Grain { on_b: false, axis: Vec3::new(2.0, 0.0, 0.3), angle: 0.0 };
         let law = PairLaw { grain: Some(grain), ..PairLaw::new(linear(2e4, 60.0), Some(law.into())) };
         let gravity = Vec3::new(0.0, 0.0, -GRAVITY);
         let half = Vec3::new(0.1, 0.1, 0.001);

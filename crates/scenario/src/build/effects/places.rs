@@ -137,7 +137,6 @@ pub(super) struct ContactSite {
 }
 
 /// The contact pairs that a place `a/b` names; a and b are shapes or links, `vehicle.name` where needed, globs allowed.
-#[expect(dead_code, reason = "effects on contacts will use it")]
 pub(super) fn contacts(entry: &Entry<'_>, parts: &Parts, faults: &mut Faults<'_>) -> Vec<ContactSite> {
     let (a, b) = entry.place.split_once('/').unwrap_or((entry.place, ""));
     let is = |text: &str, shape: usize| names_of_shape(parts, shape).iter().any(|n| glob_matches(text, n));

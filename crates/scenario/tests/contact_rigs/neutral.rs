@@ -1,0 +1,85 @@
+//! An effect at the nominal numbers changes no bit of a run; a millionth beside them it does.
+
+use scenario::spec::{Effect, ParamValue};
+use sim::State;
+
+/// Effects on the contact of dock-impact with their neutral parameters, and the one that is then changed.
+const EFFECTS: [(&str, &[(&str, f64)], &str); 10] = [
+    ("contact-stiffness", &[("k", 3e6), ("n", 1.5)], "k"),
+    ("contact-stiffness", &[("k", 3e6), ("n", 1.5)], "n"),
+    ("contact-damping", &[("c", 6.0)], "c"),
+    ("friction-coefficient", &[("mu", 0.12)], "mu"),
+    ("friction-stribeck", &[("mu_s", 0.12), ("mu_d", 0.12), ("v_s", 0.01)], "mu_s"),
+    ("friction-bristle-stiffness", &[("k_b", 4e5), ("c_b", 400.0)], "k_b"),
+    ("friction-viscous", &[("b", 0.0)], "b"),
+    ("friction-anisotropy", &[("mu_1", 0.12), ("mu_2", 0.12), ("angle", 0.3)], "mu_2"),
+    ("friction-dwell-time", &[("mu_s_inf", 0.12), ("time_constant", 0.5)], "mu_s_inf"),
+    ("adhesion", &[("force", 0.0)], "force"),
+];
+
+/// 0.7 s with the touch in the middle.
+fn run(effects: Vec<Effect>, integrator: &str) -> State {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/rigs/dock-impact.toml");
+    let kind = format!("integrator.kind={integrator}");
+    let mut spec = scenario::load(file.as_ref(), &["integrator.step_s=5e-4".to_owned(), kind]).unwrap();
+    spec.effects = effects;
+    let mut mission = scenario::build(&spec).unwrap_or_else(|e| panic!("{e}"));
+    mission.world.state_mut().bases[0].translation.vector.x = -2.115;
+    (0..1400).for_each(|_| mission.world.advance().unwrap());
+    assert!(mission.world.state().work.contact_queries > 0);
+    mission.world.state().clone()
+}
+
+fn effect(name: &str, params: impl IntoIterator<Item = (&'static str, ParamValue)>) -> Effect {
+    let params = params.into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
+    Effect { name: name.to_owned(), place: "contact:probe/drogue".to_owned(), params }
+}
+
+fn same_bits(a: &State, b: &State) -> bool {
+    a.bases == b.bases && a.momentum == b.momentum && a.bristles == b.bristles
+}
+
+#[test]
+fn neutral_effects_on_a_contact_change_no_bit_and_a_millionth_beside_they_do() {
+    for integrator in ["rk4", "implicit-euler"] {
+        let nominal = run(vec![], integrator);
+        assert!(nominal.account.contact_work < 0.0, "the probe touched");
+        for (name, params, changed) in EFFECTS {
+            let with = |beside: f64| {
+                let value = |(k, v): &(&'static str, f64)| {
+                    let by = if *k == changed { beside * if *v == 0.0 { 1.0 } else { *v } } else { 0.0 };
+                    (*k, ParamValue::Number(v + by))
+                };
+                run(vec![effect(name, params.iter().map(value))], integrator)
+            };
+            assert!(same_bits(&nominal, &with(0.0)), "{integrator}: {name} at its neutral parameters");
+            assert!(!same_bits(&nominal, &with(1e-6)), "{integrator}: {name}, {changed} a millionth beside neutral");
+        }
+    }
+}
+
+#[test]
+fn a_part_in_its_place_changes_no_bit_and_a_micrometre_aside_it_does() {
+    let nominal = run(vec![], "rk4");
+    for key in ["offset", "angle"] {
+        let with = |y: f64| {
+            run(vec![effect("contact-geometry-offset", [(key, ParamValue::Numbers(vec![0.0, y, 0.0]))])], "rk4")
+        };
+        assert!(same_bits(&nominal, &with(0.0)) && !same_bits(&nominal, &with(1e-6)), "{key}");
+    }
+}
+
+/// Stiff enough, a mount is none; what is left is the tip's own ringing.
+#[test]
+fn a_mount_changes_nothing_at_infinite_stiffness_and_keeps_momentum() {
+    let nominal = run(vec![], "rk4");
+    let mount =
+        |k: f64| vec![effect("mount-compliance", [("k", ParamValue::Number(k)), ("d", ParamValue::Number(260.0))])];
+    assert!(same_bits(&nominal, &run(mount(f64::INFINITY), "rk4")));
+    let soft = run(mount(1.6e5), "rk4");
+    let total = |s: &State| s.momentum[0] + s.momentum[1];
+    let change = total(&soft) - total(&nominal);
+    // 450 kg at 85 mm/s is 38 N·s: round-off.
+    assert!(change.force.norm() < 1e-11 && change.moment.norm() < 1e-11, "{change:?}");
+    assert!((soft.bases[0].translation.vector - nominal.bases[0].translation.vector).norm() > 1e-4);
+}
