@@ -67,7 +67,8 @@ fn resolve(model: &Model, pair: usize) -> Option<DeadWeight> {
     let (vehicle, _) = *model.owners.get(slider.body)?;
     let normal = sign * (plane.pose_bs.rotation * Vec3::z());
     let mask = model.vehicles[vehicle].base.mask();
-    let is_guided = matches!(model.vehicles[vehicle].base, Base::Only(_)) && (0..3).all(|k| !mask[3 + k] || normal[k].abs() < ROUNDING);
+    let is_guided = matches!(model.vehicles[vehicle].base, Base::Only(_))
+        && (0..3).all(|k| !mask[3 + k] || normal[k].abs() < ROUNDING);
     let fits = is_guided && does_not_turn(slider.body) && does_not_turn(plane.body);
     fits.then_some(DeadWeight { pair, body: slider.body, normal })
 }

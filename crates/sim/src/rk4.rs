@@ -13,11 +13,11 @@ use crate::effect::{self, Acting};
 use crate::mechanism;
 use crate::model::Model;
 use crate::pivots;
+use crate::rk4_bristle::{self, Stage, Track};
 use crate::solve;
 use crate::state::{Account, ContactMemory, State};
 use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
 use crate::workspace::Workspace;
-use crate::rk4_bristle::{self, Stage, Track};
 use friction::{BrushRate, Trial, carry};
 use spatial::{Mat3, Twist, Vec3, Wrench, log_rotation, rotation_rate_of_vector};
 

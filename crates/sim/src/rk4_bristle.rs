@@ -50,7 +50,8 @@ pub(crate) fn bring(model: &Model, touch: &mut Touch, at: &Stage<'_>, track: &mu
     let Some(law) = bristle(model, touch.pair, touch.weight) else { return };
     let (n, k) = (touch.normal, at.node);
     let slip = touch.u - n * n.dot(&touch.u);
-    let normal_force = model.laws[touch.pair as usize].weighted(touch.weight).normal.calc_compression(touch.gap, n.dot(&touch.u));
+    let normal_force =
+        model.laws[touch.pair as usize].weighted(touch.weight).normal.calc_compression(touch.gap, n.dot(&touch.u));
     let bodies = (touch.body_a, touch.body_b);
     track.slip[k] = at.back.deflection(bodies, &slip, &n, &at.slot.normal_w);
     track.normal_force[k] = normal_force;
@@ -61,7 +62,8 @@ pub(crate) fn bring(model: &Model, touch: &mut Touch, at: &Stage<'_>, track: &mu
     let from = (here(&track.slip[0]), track.normal_force[0]);
     let elapsed = if k == 3 { at.step } else { 0.5 * at.step };
     let way = Way { law: &law, s: touch.s, rest: touch.rest, grain: touch.grain };
-    let own = SlipPath { slip: [here(&track.slip[k - 1]); 3], ..SlipPath::between(from, (slip, normal_force), elapsed) };
+    let own =
+        SlipPath { slip: [here(&track.slip[k - 1]); 3], ..SlipPath::between(from, (slip, normal_force), elapsed) };
     let whole = SlipPath {
         slip: [from.0, here(&(0.5 * (track.slip[1] + track.slip[2]))), slip],
         normal_force: [from.1, 0.5 * (track.normal_force[1] + track.normal_force[2]), normal_force],

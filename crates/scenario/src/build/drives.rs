@@ -17,11 +17,7 @@ pub struct DriveChannel {
 }
 
 /// The model on its drives, and their channels in the order that [`Model::with_drive_paths`] takes.
-pub(super) fn attach(
-    scenario: &Scenario,
-    model: Model,
-    faults: &mut Faults<'_>,
-) -> Option<(Model, Vec<DriveChannel>)> {
+pub(super) fn attach(scenario: &Scenario, model: Model, faults: &mut Faults<'_>) -> Option<(Model, Vec<DriveChannel>)> {
     let (mut drives, mut channels) = (Vec::new(), Vec::new());
     for (i, drive) in scenario.drives.iter().enumerate() {
         let site = Site { scenario, drive, key: format!("drive[{i}]") };

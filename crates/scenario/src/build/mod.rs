@@ -16,8 +16,8 @@ mod start;
 mod vehicles;
 
 pub(crate) use actuators::ActuatorTable;
-pub use drives::DriveChannel;
 pub use docking::docking_visuals;
+pub use drives::DriveChannel;
 pub(crate) use faults::Faults;
 pub(crate) use kinematics::{calc_error, halves, solve_pose};
 pub use shapes::shape_of_geometry;

@@ -43,7 +43,9 @@ pub(super) fn quantity(scenario: &Scenario, model: &Model, name: &str) -> Result
         ("drive", "position") => Ok(Quantity::DrivePosition(drive(model, name)?)),
         ("drive", "angle") => Ok(Quantity::DriveAngle(drive(model, name)?)),
         ("actuator", "command") => Ok(Quantity::Command(actuator(model, name)?)),
-        _ => Err(format!("nothing is measured as \"{family}.….{what}\"; see the table of channels in the documentation")),
+        _ => {
+            Err(format!("nothing is measured as \"{family}.….{what}\"; see the table of channels in the documentation"))
+        }
     }
 }
 

@@ -86,7 +86,8 @@ enum Part {
 
 /// A prefix ends where a word of the channel ends: `body.a` is not of `body.ab`.
 fn part_of(prefix: &str, quantity: &str) -> Option<Part> {
-    let begins = |long: &str, short: &str| long == short || long.strip_prefix(short).is_some_and(|r| r.starts_with('.'));
+    let begins =
+        |long: &str, short: &str| long == short || long.strip_prefix(short).is_some_and(|r| r.starts_with('.'));
     if begins(quantity, prefix) {
         return Some(Part::All);
     }
@@ -134,7 +135,12 @@ mod tests {
     #[test]
     fn factors_and_constants_of_one_sensor_come_together_and_of_another_not() {
         let all = [
-            effect("sensor-bias", "sensor:body.target.angular_velocity", "bias", ParamValue::Numbers(vec![1.0, 2.0, 3.0])),
+            effect(
+                "sensor-bias",
+                "sensor:body.target.angular_velocity",
+                "bias",
+                ParamValue::Numbers(vec![1.0, 2.0, 3.0]),
+            ),
             effect("sensor-scale", "sensor:body.target", "scale", ParamValue::Number(2.0)),
             effect("sensor-bias", "sensor:body.target.angular_velocity.y", "bias", ParamValue::Number(0.5)),
             effect("sensor-bias", "sensor:body.tar", "bias", ParamValue::Number(100.0)),

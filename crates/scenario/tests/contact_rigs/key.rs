@@ -67,7 +67,8 @@ pub fn numbers(value: &Value) -> Vec<f64> {
 /// Poses and twists (W axes) of chaser and target at the start. The states are those of the centres of mass, `com` that of
 /// the chaser in its frame.
 pub fn start_of(state: &[f64], com: Vec3) -> [(Pose, Twist); 2] {
-    let bodies: Vec<_> = state.chunks(state.len() / 2).map(|s| if s.len() == 6 { planar(s) } else { spatial_of(s) }).collect();
+    let bodies: Vec<_> =
+        state.chunks(state.len() / 2).map(|s| if s.len() == 6 { planar(s) } else { spatial_of(s) }).collect();
     let (pose, twist) = bodies[0];
     let arm = pose.rotation * com;
     let origin = Pose::from_parts((pose.translation.vector - arm).into(), pose.rotation);

@@ -1,7 +1,7 @@
 //! Runs a world along a recording and compares, family by family, in units of the sensors' noise.
 
 use crate::key::{Run, start_of};
-use sim::{World, Command};
+use sim::{Command, World};
 use spatial::{Twist, Vec3, nalgebra};
 use std::collections::BTreeMap;
 
@@ -105,7 +105,11 @@ impl Rig {
         for (v, body) in ["chaser", "target"].into_iter().enumerate() {
             for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
                 errors.add("position", value(format!("body.{body}.position.{axis}")) - seen.pos[v][k], self.noise(0));
-                errors.add("gyro", value(format!("body.{body}.angular_velocity.{axis}")) - seen.rate[v][k], self.noise(2));
+                errors.add(
+                    "gyro",
+                    value(format!("body.{body}.angular_velocity.{axis}")) - seen.rate[v][k],
+                    self.noise(2),
+                );
             }
             let q = ["w", "x", "y", "z"].map(|a| value(format!("body.{body}.orientation.{a}")));
             if !q[0].is_nan() {
@@ -128,7 +132,8 @@ impl Rig {
         (0..2).for_each(|v| twists[v] = start[v].1);
         world.set_base_twists(&twists);
         let h = world.model().step;
-        let commands: Vec<_> = (1..=8).filter_map(|k| run.signals.values(&format!("actuator.thruster_{k}.command"))).collect();
+        let commands: Vec<_> =
+            (1..=8).filter_map(|k| run.signals.values(&format!("actuator.thruster_{k}.command"))).collect();
         let force = run.signals.values("sensor.probe.force.x").unwrap();
         let mut all = Vec::with_capacity(run.signals.times.len());
         for (row, t) in run.signals.times.iter().enumerate() {

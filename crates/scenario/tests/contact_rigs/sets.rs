@@ -61,7 +61,8 @@ fn air_table_03_stiffness() {
 fn look() {
     let set = Set::read("dock-impact-01").unwrap();
     let run = &set.runs[3];
-    let over = |h: &str| vec![format!("integrator.step_s={h}"), "contact[0].normal.stiffness_n_per_m_exp=3.6e6".to_owned()];
+    let over =
+        |h: &str| vec![format!("integrator.step_s={h}"), "contact[0].normal.stiffness_n_per_m_exp=3.6e6".to_owned()];
     let fine = DOCK_IMPACT.predict(&mut build("dock-impact", &over("1e-5")).world, run, Vec3::zeros());
     let mut mission = build("dock-impact", &over(&std::env::var("STEP").unwrap()));
     let coarse = DOCK_IMPACT.predict(&mut mission.world, run, Vec3::zeros());
@@ -70,8 +71,13 @@ fn look() {
         let e = coarse[i].force - fine[i].force;
         if e.norm() > 0.05 || fine[i].force.norm() > 0.0 && *t < prev + 0.002 {
             let m = coarse[i].torque - fine[i].torque;
-            println!("{t:.4} e {:8.3} {:8.3} {:8.3}  F {:9.3} {:9.3} {:9.3}  dM {:7.3} {:7.3} {:7.3}", e.x, e.y, e.z, fine[i].force.x, fine[i].force.y, fine[i].force.z, m.x, m.y, m.z);
+            println!(
+                "{t:.4} e {:8.3} {:8.3} {:8.3}  F {:9.3} {:9.3} {:9.3}  dM {:7.3} {:7.3} {:7.3}",
+                e.x, e.y, e.z, fine[i].force.x, fine[i].force.y, fine[i].force.z, m.x, m.y, m.z
+            );
         }
-        if fine[i].force.norm() == 0.0 { prev = *t; }
+        if fine[i].force.norm() == 0.0 {
+            prev = *t;
+        }
     }
 }

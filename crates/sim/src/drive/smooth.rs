@@ -84,7 +84,9 @@ impl Filter<'_> {
             let fit = self.run(10.0_f64.powf(log), |_| {});
             match known {
                 Some(r) => fit.sum_sq / r + fit.sum_log,
-                None => fit.count * (fit.sum_sq / fit.count).max(floor * floor).max(f64::MIN_POSITIVE).ln() + fit.sum_log,
+                None => {
+                    fit.count * (fit.sum_sq / fit.count).max(floor * floor).max(f64::MIN_POSITIVE).ln() + fit.sum_log
+                }
             }
         };
         let (low, high, points) = SEARCH;

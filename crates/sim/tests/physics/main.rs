@@ -10,6 +10,7 @@ mod brush;
 mod convergence;
 mod determinism;
 mod docking;
+mod drives;
 mod free_motion;
 mod friction;
 mod guided;
