@@ -18,6 +18,7 @@ const SETS: [(&str, &str, &[&str]); 4] = [
             "contact[0].friction.mu=0.235",
             "contact[0].friction.mu_static=0.275",
             "contact[0].friction.stribeck_velocity_m_per_s=0.003",
+            "integrator.step_s=1e-4",
         ],
     ),
     ("02", "csv", &["contact[0].friction.mu=0.243"]),

@@ -84,7 +84,7 @@ fn an_arm_on_a_driven_base_keeps_the_momentum_books() {
         let frame = Pose::from_parts(Vec3::new(0.3, -0.2, 0.1).into(), Rot::from_euler_angles(0.2, 0.1, -0.4));
         let paths = vec![
             (DriveAxis::Y, DrivePath::sine(0.05, 1.5, 0.3)),
-            (DriveAxis::AboutZ, DrivePath::through(&[[0.0, 0.0], [0.5, 0.4], [1.0, -0.2]])),
+            (DriveAxis::AboutZ, DrivePath::through(&[[0.0, 0.0], [0.5, 0.4], [1.2, -0.2]])),
         ];
         let spec = spec(vec![(arm7(), Base::Fixed)], &Setup::new(integrator).step(1e-3));
         let mut world = driven(spec, 0, frame, paths);
