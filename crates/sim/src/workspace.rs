@@ -201,6 +201,9 @@ pub(crate) fn calc_world_momentum(vehicle: &Vehicle, kin: &Kinematics) -> Wrench
 
 /// A wrench (or momentum) about the anchor, as it enters the vehicle's momentum about W's origin.
 pub(crate) fn world_wrench(vehicle: &Vehicle, anchor: &Vec3, about_anchor: &Wrench) -> Wrench {
+    if let Base::Driven(_) = vehicle.base {
+        return about_anchor.about(&-anchor);
+    }
     let mask = vehicle.base.mask();
     let free = |v: &Vec3, at: usize| Vec3::from_fn(|i, _| if mask[at + i] { v[i] } else { 0.0 });
     let force = free(&about_anchor.force, 3);

@@ -62,7 +62,10 @@ impl DrivePath {
         let (times, values) = sieved(points.iter().map(|p| (p[0], p[1])));
         let slopes = calc_spline_slopes(&times, &values);
         let knot = |i: usize| (times[i], values[i], slopes[i]);
-        let polynomials = (1..times.len()).map(|i| cubic(knot(i - 1), knot(i))).collect();
+        let mut polynomials: Vec<_> = (1..times.len()).map(|i| cubic(knot(i - 1), knot(i))).collect();
+        if let [alone] = values[..] {
+            polynomials.push([alone, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        }
         Self { form: Form::Pieces(Pieces::new(times, polynomials)) }
     }
 
@@ -160,29 +163,25 @@ fn quintic(h: f64, start: &[f64; 3], end: &[f64; 3]) -> [f64; 6] {
 }
 
 impl Pieces {
-    fn new(knots: Vec<f64>, mut polynomials: Vec<[f64; 6]>) -> Self {
-        let (mut last, mut pace) = (Motion::default(), None);
-        if let (Some(piece), [.., before, end]) = (polynomials.last(), &knots[..]) {
-            last = Motion { acceleration: 0.0, ..eval(piece, end - before) };
-            pace = calc_pace(&knots);
-        } else if polynomials.is_empty() && !knots.is_empty() {
-            polynomials.push([0.0; 6]);
-        }
-        Self { knots, polynomials, last, pace }
+    fn new(knots: Vec<f64>, polynomials: Vec<[f64; 6]>) -> Self {
+        let length = knots.len().checked_sub(2).map_or(0.0, |i| knots[i + 1] - knots[i]);
+        let last = polynomials.last().map_or(Motion::default(), |piece| eval(piece, length));
+        let pace = calc_pace(&knots);
+        Self { last: Motion { acceleration: 0.0, ..last }, knots, polynomials, pace }
     }
 
     fn eval(&self, time: f64) -> Motion {
         let (Some(first), Some(end)) = (self.knots.first(), self.knots.last()) else { return Motion::default() };
-        if time <= *first {
+        if time < *first {
             let start = eval(&self.polynomials[0], 0.0);
             return going_on(start, time - first);
         }
-        if time >= *end {
+        if time > *end {
             return going_on(self.last, time - end);
         }
         let index = match self.pace {
             Some(pace) => self.near(((time - first) * pace) as usize, time),
-            None => self.knots.partition_point(|t| *t <= time) - 1,
+            None => (self.knots.partition_point(|t| *t <= time) - 1).min(self.polynomials.len() - 1),
         };
         eval(&self.polynomials[index], time - self.knots[index])
     }
@@ -207,7 +206,7 @@ fn going_on(from: Motion, elapsed: f64) -> Motion {
 
 /// Pieces per second, where every knot is within a tenth of a piece of an even pace.
 fn calc_pace(knots: &[f64]) -> Option<f64> {
-    let (first, last) = (knots.first()?, knots.last()?);
+    let (first, last) = (knots.first()?, knots.last().filter(|_| knots.len() > 1)?);
     let length = (last - first) / (knots.len() - 1) as f64;
     let even = |(i, t): (usize, &f64)| (t - first - i as f64 * length).abs() < 0.1 * length;
     knots.iter().enumerate().all(even).then_some(1.0 / length)

@@ -16,6 +16,7 @@ mod effect_books;
 mod effect_gears;
 mod effect_joints;
 mod effect_lines;
+mod drives;
 mod free_motion;
 mod friction;
 mod guided;
