@@ -3,7 +3,8 @@
 //! Two lattices are looked for. **Decimal**: all values are multiples of 10⁻ᵏ (a fixed number of decimals), or all have
 //! d significant digits (then the step differs with the value and the root mean square is taken). **Encoder**: the
 //! differences of neighbouring samples are multiples of a step δ that is no power of ten, whatever the offset; δ is
-//! where C(δ) = mean cos(2π d/δ) over small differences d is near 1 (rounding to g on top lowers it to sinc²(g/δ)).
+//! where C(δ) = mean cos(2π d/δ) over small differences d is near 1 (rounding to g on top lowers it to sinc²(g/δ)). It is
+//! seen where neighbours differ by some tens of steps at most: a coarse encoder, or a joint that turns around.
 
 /// Samples that are looked at; more tell nothing new.
 const LOOKED_AT: usize = 4000;

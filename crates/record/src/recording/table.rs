@@ -49,12 +49,16 @@ impl Table {
             "parquet" | "pq" => load_parquet(path, group)?,
             "csv" | "txt" | "tsv" => load_csv(path, group)?,
             _ => {
-                let problem = format!("is neither .csv nor .parquet (its ending is \"{extension}\"); convert or rename it");
+                let problem =
+                    format!("is neither .csv nor .parquet (its ending is \"{extension}\"); convert or rename it");
                 return Err(RecordError::table(path, problem));
             }
         };
         if table.places.is_empty() {
-            return Err(RecordError::table(path, "holds no row of data; was the recording stopped at once, or the file cut?"));
+            return Err(RecordError::table(
+                path,
+                "holds no row of data; was the recording stopped at once, or the file cut?",
+            ));
         }
         Ok(table)
     }
