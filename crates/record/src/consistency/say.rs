@@ -106,10 +106,9 @@ fn add_angle(found: &Consistency, said: &mut Vec<String>) {
 
 fn add_delay(found: &Consistency, said: &mut Vec<String>) {
     if let Some(delay) = found.delay.filter(|d| d.z(0.0).abs() > SIGNIFICANT) {
-        let (late, early) =
-            if delay.value > 0.0 { (&found.rate, &found.position) } else { (&found.position, &found.rate) };
+        let order = if delay.value > 0.0 { "later" } else { "earlier" };
         let size = Estimate { value: delay.value.abs(), ..delay };
-        said.push(format!("{late} comes {} s later than {early}", shown(size)));
+        said.push(format!("comes {} s {order} than {}", shown(size), found.position));
     }
 }
 

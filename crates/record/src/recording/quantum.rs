@@ -123,7 +123,7 @@ fn encoder_step(values: &[f64]) -> Option<f64> {
     sizes.sort_unstable_by(f64::total_cmp);
     let smallest = *sizes.get(sizes.len() / 200)?;
     let mut step = mean(sizes.iter().copied().filter(|d| *d >= 0.9 * smallest && *d < 1.6 * smallest))?;
-    for reach in [4.5, 20.5] {
+    for reach in [2.5, 4.5, 9.5, 20.5] {
         let near: Vec<f64> = sizes.iter().copied().filter(|d| *d > 0.5 * step && *d < reach * step).collect();
         let counts = near.iter().map(|d| (d / step).round());
         let (along, across) = near.iter().zip(counts).fold((0.0, 0.0), |(a, b), (d, n)| (a + d * n, b + n * n));
