@@ -220,7 +220,9 @@ fn load_parquet(path: &Path, group: Option<&str>) -> Result<Table, RecordError> 
     let wrong = |error: &dyn std::fmt::Display| {
         let text = error.to_string();
         let problem = match text.contains("Disabled feature") {
-            true => format!("is compressed in a way that is not read here ({text}); write it with snappy, zstd, gzip or lz4"),
+            true => format!(
+                "is compressed in a way that is not read here ({text}); write it with snappy, zstd, gzip or lz4"
+            ),
             false => format!("not a whole Parquet file ({text}); copy it again, or ask for it anew"),
         };
         RecordError::table(path, problem)
