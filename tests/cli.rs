@@ -218,3 +218,22 @@ fn score_judges_a_folder_and_its_status_says_whether_all_is_met() {
     let schema: serde_json::Value = serde_json::from_slice(&schema).unwrap();
     assert!(schema["properties"]["verdict"].is_object());
 }
+
+#[test]
+fn inspect_prints_figures_writes_a_plot_and_ends_by_what_it_finds() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = place(&dir, "inspection");
+    let output = softdock(&["inspect", "tests/recordings/tumble", "--out", text(&out)]);
+    assert_eq!(output.status.code(), Some(0), "{}", error_of(&output));
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(printed.contains("body.target.angular_velocity") && printed.contains("misfit"), "{printed}");
+    let document: serde_json::Value = serde_json::from_slice(&fs::read(out.join("inspection.json")).unwrap()).unwrap();
+    assert_eq!(document["format"], "softdock-inspection-1");
+    assert!(fs::read_to_string(out.join("channels.svg")).unwrap().contains("<path"));
+    let output = softdock(&["inspect", "tests/recordings/tumble-in-degrees", "--json"]);
+    assert_eq!(output.status.code(), Some(1), "a gyro in deg/s contradicts its attitude");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("deg/s"));
+    let output = softdock(&["inspect", "tests/recordings"]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(error_of(&output).contains("recording.toml"), "{}", error_of(&output));
+}

@@ -58,7 +58,8 @@ fn scale_bias_delay_and_angle_of_a_gyro_are_found_together() {
     let found = only(&inspection);
     assert!(found.misfit > 1.5 && (found.misfit_fitted - 1.0).abs() < 0.08, "{} {}", found.misfit, found.misfit_fitted);
     // A turned and scaled sensor: off-diagonal terms of second order (1e-4) mix into the diagonal.
-    let sensor = spatial::Mat3::from_diagonal(&gyro.scale) * *spatial::exp_rotation(&gyro.angle).inverse().to_rotation_matrix().matrix();
+    let sensor = spatial::Mat3::from_diagonal(&gyro.scale)
+        * *spatial::exp_rotation(&gyro.angle).inverse().to_rotation_matrix().matrix();
     for k in 0..3 {
         assert_near(found.scale[k], sensor[(k, k)], 5e-4);
         assert_near(found.bias[k], gyro.bias[k], 2e-5);
@@ -137,4 +138,31 @@ fn a_joint_at_rest_has_no_scale_and_no_delay() {
     let found = only(&inspection);
     assert_eq!((found.scale[0], found.delay), (None, None));
     assert!(found.findings.is_empty() && found.bias[0].unwrap().z(0.0).abs() < FAR, "{found:?}");
+}
+
+/// The small sets under tests/recordings are what these sensors give; `SOFTDOCK_WRITE=1` writes them anew.
+#[test]
+fn the_small_sets_are_what_their_generator_makes() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/recordings");
+    for (name, factor) in [("tumble", 1.0), ("tumble-in-degrees", 57.295_779_5)] {
+        let folder = root.join(name);
+        for (file, seed) in [("run-01.csv", 11), ("run-02.csv", 12)] {
+            let made = tumble_csv(&Gyro { factor, ..Gyro::IDEAL }, seed, 30, as_is);
+            if std::env::var_os("SOFTDOCK_WRITE").is_some() {
+                std::fs::create_dir_all(&folder).unwrap();
+                let runs = "[[run]]\nfile = \"run-01.csv\"\nrole = \"fit\"\n\n[[run]]\nfile = \"run-02.csv\"\nrole = \"holdout\"\n";
+                std::fs::write(folder.join("recording.toml"), format!("{TUMBLE}\n{runs}")).unwrap();
+                std::fs::write(folder.join(file), &made).unwrap();
+            }
+            let kept = std::fs::read_to_string(folder.join(file)).unwrap();
+            assert_eq!(kept.lines().count(), made.lines().count());
+            for (a, b) in kept.lines().zip(made.lines()).skip(1) {
+                // A sine that differs in its last bit may round to the neighbour.
+                let near = |(x, y): (&str, &str)| {
+                    x == y || (x.parse::<f64>().unwrap() - y.parse::<f64>().unwrap()).abs() < 1.5e-5
+                };
+                assert!(a.split(',').zip(b.split(',')).all(near), "{a}\n{b}");
+            }
+        }
+    }
 }

@@ -39,10 +39,13 @@ fn parquet_and_csv_give_the_same_set() {
     let csv = joint_csv(1, 2.0, joint_rate);
     let from_csv = load(folder(JOINT, &[("a.csv", &csv)]).path());
     let series = &from_csv.runs[0].series;
-    let channel = |s: &Series| Channel { spec: ChannelSpec::new(&s.channel, "", Plot::Joints), values: s.values.clone() };
+    let channel =
+        |s: &Series| Channel { spec: ChannelSpec::new(&s.channel, "", Plot::Joints), values: s.values.clone() };
     let signals = Signals { times: series[0].times.clone(), channels: series.iter().map(channel).collect() };
     let bytes = record::encode_parquet(&Meta::default(), &signals).unwrap();
-    let from_parquet = load(exact(&format!("{JOINT}[[run]]\nfile = \"a.parquet\"\nrole = \"fit\"\n"), &[("a.parquet", &bytes)]).path());
+    let from_parquet = load(
+        exact(&format!("{JOINT}[[run]]\nfile = \"a.parquet\"\nrole = \"fit\"\n"), &[("a.parquet", &bytes)]).path(),
+    );
     assert_eq!(&from_parquet.runs[0].series, series);
 }
 
@@ -108,7 +111,10 @@ fn a_row_out_of_order_is_sorted_and_time_that_starts_again_is_an_error() {
     assert!(said(&set).contains("1 rows stood out of order"), "{}", said(&set));
     let twice: Vec<usize> = (0..200).chain(0..200).collect();
     let message = error(one(&text(&twice)).path());
-    assert!(message.contains("a.csv:202: time goes back from 1.99 s to 0 s") && message.contains("[time] group"), "{message}");
+    assert!(
+        message.contains("a.csv:202: time goes back from 1.99 s to 0 s") && message.contains("[time] group"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -134,12 +140,16 @@ fn cells_that_are_not_finite_are_missing_and_a_last_row_without_an_end_is_left_o
     let set = load(one("t,joint.a.position\n0,1\n1,nan\n2,inf\n3,NA\n4,5\n5,6.7").path());
     assert_eq!(set.runs[0].series[0].values, [1.0, 5.0]);
     let said = said(&set);
-    assert!(said.contains("3 cells are not finite and count as missing") && said.contains("line 7, the last"), "{said}");
+    assert!(
+        said.contains("3 cells are not finite and count as missing") && said.contains("line 7, the last"),
+        "{said}"
+    );
 }
 
 #[test]
 fn noise_is_that_of_the_longest_prefix() {
-    let noise = "[noise]\n\"body.a\" = 1.0\n\"body.a.position\" = 2.0\n\"body.a.position.x\" = 3\n\"body.a.pos\" = 9.0\n";
+    let noise =
+        "[noise]\n\"body.a\" = 1.0\n\"body.a.position\" = 2.0\n\"body.a.position.x\" = 3\n\"body.a.pos\" = 9.0\n";
     let csv = "t,body.a.position.x,body.a.position.y\n0,1,2\n1,1,2\n";
     let set = load(folder(&format!("{HEAD}{noise}"), &[("a.csv", csv)]).path());
     assert_eq!(set.sigma("body.a.position.x"), Some(3.0));
@@ -152,9 +162,10 @@ fn noise_is_that_of_the_longest_prefix() {
 #[test]
 fn rounding_is_found_in_decimals_and_encoder_steps() {
     let mut noise = Noise::new(1);
-    let truth: Vec<f64> = (0..2000).map(|i| (f64::from(i) * 0.003).sin() + 2e-5 * noise.normal()).collect();
+    let truth: Vec<f64> = (0..2000).map(|i| 0.02 * (f64::from(i) * 0.003).sin() + 2e-5 * noise.normal()).collect();
     let of = |round: &dyn Fn(f64) -> f64| {
-        Series::new("joint.a.position", (0..2000).map(f64::from).collect(), truth.iter().map(|v| round(*v)).collect()).quantum()
+        Series::new("joint.a.position", (0..2000).map(f64::from).collect(), truth.iter().map(|v| round(*v)).collect())
+            .quantum()
     };
     let decimals = |v: f64, k: i32| format!("{v:.*}", k as usize).parse::<f64>().unwrap();
     assert_eq!(of(&|v| v), 0.0, "continuous");
@@ -174,21 +185,42 @@ fn errors_name_the_file_the_place_and_the_way_out() {
     let with = |toml: &str| exact(toml, &[("a.csv", good.as_bytes()), ("run-01.csv", good.as_bytes())]);
     let channels = |line: &str| format!("{HEAD}[channels]\n{line}\n{FIT}");
     let manifests: [(String, &[&str]); 15] = [
-        (format!("{HEAD}{}", FIT.replace("a.csv", "run-1.csv")), &["recording.toml", "run-1.csv", "did you mean \"run-01.csv\"?"]),
-        (format!("{HEAD}{}", FIT.replace("fit", "fitt")), &["recording.toml:5", "role = \"fitt\"", "did you mean \"fit\"?"]),
-        (format!("{HEAD}{}", FIT.replace("role", "rôle")), &["recording.toml:5", "unknown key", "did you mean \"role\"?"]),
+        (
+            format!("{HEAD}{}", FIT.replace("a.csv", "run-1.csv")),
+            &["recording.toml", "run-1.csv", "did you mean \"run-01.csv\"?"],
+        ),
+        (
+            format!("{HEAD}{}", FIT.replace("fit", "fitt")),
+            &["recording.toml:5", "role = \"fitt\"", "did you mean \"fit\"?"],
+        ),
+        (
+            format!("{HEAD}{}", FIT.replace("role", "rolle")),
+            &["recording.toml:5", "unknown key", "did you mean \"role\"?"],
+        ),
         (format!("{HEAD}[[run]]\nfile = \"a.csv\"\n"), &["has no role", "\"fit\" or \"holdout\""]),
-        (format!("{HEAD}titel = \"x\"\n{FIT}"), &["recording.toml:3", "unknown key `titel`", "did you mean \"title\"?"]),
+        (
+            format!("{HEAD}titel = \"x\"\n{FIT}"),
+            &["recording.toml:3", "unknown key `titel`", "did you mean \"title\"?"],
+        ),
         (format!("format = 2\nrig = \"arm\"\n{FIT}"), &["format = 2 is not known"]),
         (format!("rig = \"arm\"\n{FIT}"), &["has no format", "`format = 1`"]),
         (format!("format = 1\n{FIT}"), &["has no rig"]),
         (HEAD.to_owned(), &["names no run", "[[run]]"]),
         (format!("{HEAD}{FIT}{FIT}"), &["[[run]] 2 names \"a.csv\" a second time"]),
         (format!("{HEAD}[noise]\n\"joint.a.position\" = -1\n{FIT}"), &["recording.toml:4", "not a standard deviation"]),
-        (channels("\"joint.a.velocity\" = { column = \"x\", unit = \"deg/min\" }"), &["\"deg/min\" is not known", "rpm", "give scale"]),
+        (
+            channels("\"joint.a.velocity\" = { column = \"x\", unit = \"deg/min\" }"),
+            &["\"deg/min\" is not known", "rpm", "give scale"],
+        ),
         (channels("\"joint.a.velocity\" = { column = \"x\", unit = \"mm\" }"), &["does not fit here", "deg/s", "mm/s"]),
-        (channels("\"joint.a.speed\" = { column = \"x\" }"), &["no channel of the recording format", "joint.<joint>.velocity"]),
-        (channels("\"joint.a.velocity\" = { column = \"joint.a.positon\" }"), &["no run file has a column", "did you mean \"joint.a.position\"?"]),
+        (
+            channels("\"joint.a.speed\" = { column = \"x\" }"),
+            &["no channel of the recording format", "joint.<joint>.velocity"],
+        ),
+        (
+            channels("\"joint.a.velocity\" = { column = \"joint.a.positon\" }"),
+            &["no run file has a column", "did you mean \"joint.a.position\"?"],
+        ),
     ];
     for (toml, wanted) in &manifests {
         let message = error(with(toml).path());
@@ -217,7 +249,10 @@ fn errors_name_the_file_the_place_and_the_way_out() {
 fn a_parquet_file_cut_at_any_byte_is_an_error() {
     let signals = Signals {
         times: (0..50).map(f64::from).collect(),
-        channels: vec![Channel { spec: ChannelSpec::new("joint.a.position", "rad", Plot::Joints), values: vec![0.5; 50] }],
+        channels: vec![Channel {
+            spec: ChannelSpec::new("joint.a.position", "rad", Plot::Joints),
+            values: vec![0.5; 50],
+        }],
     };
     let bytes = record::encode_parquet(&Meta::default(), &signals).unwrap();
     let dir = exact(&format!("{HEAD}{}", FIT.replace("a.csv", "a.parquet")), &[("a.parquet", &bytes)]);

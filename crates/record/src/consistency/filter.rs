@@ -25,7 +25,8 @@ pub(super) struct Model {
 
 impl Model {
     /// The sensor as it should be.
-    pub(super) const IDEAL: Self = Self { c: Mat3::new(1., 0., 0., 0., 1., 0., 0., 0., 1.), b: Vec3::new(0., 0., 0.), tau: 0.0 };
+    pub(super) const IDEAL: Self =
+        Self { c: Mat3::new(1., 0., 0., 0., 1., 0., 0., 0., 1.), b: Vec3::new(0., 0., 0.), tau: 0.0 };
 }
 
 /// A fitted figure.

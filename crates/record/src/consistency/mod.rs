@@ -83,11 +83,7 @@ pub fn check(set: &RecordingSet, sigma: &dyn Fn(&str) -> Option<f64>) -> Vec<Con
     pairs::find(set).iter().filter_map(|pair| check_pair(set, pair, sigma)).collect()
 }
 
-fn check_pair(
-    set: &RecordingSet,
-    pair: &pairs::Pair,
-    sigma: &dyn Fn(&str) -> Option<f64>,
-) -> Option<Consistency> {
+fn check_pair(set: &RecordingSet, pair: &pairs::Pair, sigma: &dyn Fn(&str) -> Option<f64>) -> Option<Consistency> {
     let noise = pairs::noise(pair, sigma)?;
     let tracks = pairs::tracks(set, pair, &noise);
     if tracks.iter().map(|track| track.times.len()).sum::<usize>() < FEWEST {
@@ -123,9 +119,7 @@ fn report(pair: &pairs::Pair, runs: usize, fit: &Fit) -> Consistency {
         gain: fit.before - fit.after,
         parameters: fit.parameters(),
         scale: (0..d).map(scale).collect(),
-        bias: (0..d)
-            .map(|i| Some(Estimate { value: fit.model.b[i], std_err: fit.std_err_b(i)? }))
-            .collect(),
+        bias: (0..d).map(|i| Some(Estimate { value: fit.model.b[i], std_err: fit.std_err_b(i)? })).collect(),
         delay: fit.std_err_tau().map(|std_err| Estimate { value: fit.model.tau, std_err }),
         angle: if pair.is_rotation { fit.angle() } else { None },
         is_mirrored: fit.model.c.determinant() < 0.0,

@@ -32,7 +32,9 @@ pub(super) fn find(set: &RecordingSet) -> Vec<Pair> {
     let channels: BTreeSet<&str> = set.runs.iter().flat_map(|run| &run.series).map(|s| s.channel.as_str()).collect();
     let mut pairs = Vec::new();
     for channel in &channels {
-        let Some(name) = ChannelName::parse(channel).filter(|name| matches!(name.component, "" | "x")) else { continue };
+        let Some(name) = ChannelName::parse(channel).filter(|name| matches!(name.component, "" | "x")) else {
+            continue;
+        };
         let subject = |quantity: &str| format!("{}.{}.{quantity}", name.family(), name.subject);
         let named = |prefix: &str, parts: &[&str]| parts.iter().map(|c| format!("{prefix}{c}")).collect::<Vec<_>>();
         let (position, parts, is_rotation): (String, &[&str], bool) = match name.quantity {

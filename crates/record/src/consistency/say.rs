@@ -49,8 +49,13 @@ pub(super) fn findings(found: &Consistency, other: Option<&str>) -> (Vec<String>
 /// Which axes have the wrong sign.
 fn mirrored(found: &Consistency) -> String {
     let names = if found.matrix.len() == 1 { vec![""] } else { vec!["x", "y", "z"] };
-    let wrong: Vec<&str> =
-        names.iter().zip(&found.matrix).enumerate().filter(|(i, (_, row))| row[*i] < 0.0).map(|(_, (n, _))| *n).collect();
+    let wrong: Vec<&str> = names
+        .iter()
+        .zip(&found.matrix)
+        .enumerate()
+        .filter(|(i, (_, row))| row[*i] < 0.0)
+        .map(|(_, (n, _))| *n)
+        .collect();
     match wrong.as_slice() {
         [""] => "its sign is reversed".to_owned(),
         [] => "two axes are exchanged".to_owned(),
@@ -65,7 +70,10 @@ fn wrong_unit(found: &Consistency) -> Option<String> {
         .into_iter()
         .find(|(factor, _)| !scales.is_empty() && scales.iter().all(|s| (s / factor - 1.0).abs() < 0.05))?;
     let mean = scales.iter().sum::<f64>() / scales.len() as f64;
-    Some(format!("reads {mean:.4} times the derivative of {} (a unit's factor would be {factor:.4}): {what}", found.position))
+    Some(format!(
+        "reads {mean:.4} times the derivative of {} (a unit's factor would be {factor:.4}): {what}",
+        found.position
+    ))
 }
 
 /// Scales that are wrong; one far from 1 is a fault.
@@ -74,7 +82,12 @@ fn add_scales(found: &Consistency, said: &mut Vec<String>) -> bool {
     for (axis, scale) in found.scale.iter().enumerate() {
         let Some(scale) = scale.filter(|s| s.z(1.0).abs() > SIGNIFICANT) else { continue };
         is_fault |= !(0.5..2.0).contains(&scale.value);
-        said.push(format!("{}reads {} times the derivative of {}", axis_name(found, axis), shown(scale), found.position));
+        said.push(format!(
+            "{}reads {} times the derivative of {}",
+            axis_name(found, axis),
+            shown(scale),
+            found.position
+        ));
     }
     is_fault
 }
@@ -93,10 +106,9 @@ fn add_angle(found: &Consistency, said: &mut Vec<String>) {
 
 fn add_delay(found: &Consistency, said: &mut Vec<String>) {
     if let Some(delay) = found.delay.filter(|d| d.z(0.0).abs() > SIGNIFICANT) {
-        let (late, early) =
-            if delay.value > 0.0 { (&found.rate, &found.position) } else { (&found.position, &found.rate) };
+        let order = if delay.value > 0.0 { "later" } else { "earlier" };
         let size = Estimate { value: delay.value.abs(), ..delay };
-        said.push(format!("{late} comes {} s later than {early}", shown(size)));
+        said.push(format!("comes {} s {order} than {}", shown(size), found.position));
     }
 }
 

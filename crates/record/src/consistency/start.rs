@@ -52,7 +52,11 @@ pub(super) fn other_convention(pair: &Pair, tracks: &[Track]) -> Option<&'static
         return None;
     }
     let others: [(fn(Rot) -> Rot, bool, &str); 3] = [
-        (|q| q.inverse(), false, "the quaternion seems to rotate world vectors into the body frame: invert it (negate x, y, z)"),
+        (
+            |q| q.inverse(),
+            false,
+            "the quaternion seems to rotate world vectors into the body frame: invert it (negate x, y, z)",
+        ),
         (|q| q, true, "the angular velocity seems to be in world axes: the format wants it in the body frame"),
         (last_first, false, "the quaternion's components seem to be in the order x, y, z, w: map the columns anew"),
     ];

@@ -63,7 +63,8 @@ impl Track {
     /// Standard deviation of a smoothed rate: √(3(3m² + 3m − 1) / ((2m−1)(2m+1)(2m+3))) σ, m = half.
     pub(super) fn value_noise(&self, rate_noise: f64) -> f64 {
         let m = self.half as f64;
-        rate_noise * (3.0 * (3.0 * m * m + 3.0 * m - 1.0) / ((2.0 * m - 1.0) * (2.0 * m + 1.0) * (2.0 * m + 3.0))).sqrt()
+        rate_noise
+            * (3.0 * (3.0 * m * m + 3.0 * m - 1.0) / ((2.0 * m - 1.0) * (2.0 * m + 1.0) * (2.0 * m + 3.0))).sqrt()
     }
 
     /// Standard deviation of a slope: σ / (dt √Σk²), k = −m … m.
@@ -91,9 +92,8 @@ impl Track {
 
 /// The longest parabola that leaves no more than noise, its values and slopes.
 fn smoothed(times: &[f64], rates: &[Vec3], noise: f64) -> (usize, Vec<Vec3>, Vec<Vec3>) {
-    let with = |half: usize| -> (Vec<Vec3>, Vec<Vec3>) {
-        (0..rates.len()).map(|i| parabola(times, rates, i, half)).unzip()
-    };
+    let with =
+        |half: usize| -> (Vec<Vec3>, Vec<Vec3>) { (0..rates.len()).map(|i| parabola(times, rates, i, half)).unzip() };
     let (mut half, (mut values, mut slopes)) = (HALVES[0], with(HALVES[0]));
     for longer in HALVES.into_iter().skip(1).filter(|longer| rates.len() > 4 * longer) {
         let (smoother, flatter) = with(longer);
@@ -120,9 +120,7 @@ fn parabola(times: &[f64], rates: &[Vec3], i: usize, half: usize) -> (Vec3, Vec3
         sums.iter_mut().zip(powers).for_each(|(sum, power)| *sum += power);
         moments.iter_mut().zip(powers).for_each(|(moment, power)| *moment += rates[k] * power);
     }
-    let normal = spatial::Mat3::new(
-        sums[0], sums[1], sums[2], sums[1], sums[2], sums[3], sums[2], sums[3], sums[4],
-    );
+    let normal = spatial::Mat3::new(sums[0], sums[1], sums[2], sums[1], sums[2], sums[3], sums[2], sums[3], sums[4]);
     let Some(inverse) = normal.try_inverse() else { return (rates[i], Vec3::zeros()) };
     let row = |r: usize| moments[0] * inverse[(r, 0)] + moments[1] * inverse[(r, 1)] + moments[2] * inverse[(r, 2)];
     (row(0), row(1) / scale)

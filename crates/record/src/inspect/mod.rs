@@ -197,9 +197,7 @@ impl Inspection {
 
     /// The content of `inspection.json`.
     pub fn to_json(&self) -> serde_json::Value {
-        let remark = |r: &Remark| {
-            serde_json::json!({ "severity": r.severity.key(), "run": r.run, "channel": r.channel, "what": r.what })
-        };
+        let remark = |r: &Remark| serde_json::json!({ "severity": r.severity.key(), "run": r.run, "channel": r.channel, "what": r.what });
         serde_json::json!({
             "format": FORMAT,
             "rig": self.rig,

@@ -48,11 +48,14 @@ fn add_channels(text: &mut String, inspection: &Inspection) {
     let mut rows = vec![head.map(str::to_owned)];
     rows.extend(families.values().flatten().map(|channel| channel_row(channel)));
     add_table(text, &rows);
-    text.push_str("  noise: 1 sigma, white, from the samples, rounding taken off; of an orientation rad about each axis\n\n");
+    text.push_str(
+        "  noise: 1 sigma, white, from the samples, rounding taken off; of an orientation rad about each axis\n\n",
+    );
 }
 
 fn channel_row(channel: &ChannelReport) -> [String; 11] {
-    let small = |x: Option<f64>| x.map_or("–".to_owned(), |x| if x == 0.0 { "0".to_owned() } else { format!("{x:.2e}") });
+    let small =
+        |x: Option<f64>| x.map_or("–".to_owned(), |x| if x == 0.0 { "0".to_owned() } else { format!("{x:.2e}") });
     let ratio = channel.noise.zip(channel.stated).filter(|(_, stated)| *stated > 0.0);
     [
         channel.channel.clone(),
@@ -78,7 +81,9 @@ fn add_consistency(text: &mut String, inspection: &Inspection) {
     let mut rows = vec![head.map(str::to_owned)];
     rows.extend(inspection.consistency.iter().map(consistency_row));
     add_table(text, &rows);
-    text.push_str("  misfit: mean square error of the integrated rate, 1 where only noise is left; ± 1 standard error\n\n");
+    text.push_str(
+        "  misfit: mean square error of the integrated rate, 1 where only noise is left; ± 1 standard error\n\n",
+    );
 }
 
 fn consistency_row(found: &Consistency) -> [String; 6] {

@@ -102,7 +102,11 @@ fn one_clock(series: &Series) -> Vec<Remark> {
         remarks.push(Remark::new(severity, what));
     }
     if found.jitter > JITTER {
-        let what = format!("the clock jitters: steps vary by {:.1} % (1 sigma) about {:.4e} s", 100.0 * found.jitter, 1.0 / found.rate);
+        let what = format!(
+            "the clock jitters: steps vary by {:.1} % (1 sigma) about {:.4e} s",
+            100.0 * found.jitter,
+            1.0 / found.rate
+        );
         let severity = if found.jitter > 0.2 { Severity::Warning } else { Severity::Note };
         remarks.push(Remark::new(severity, what));
     }

@@ -25,7 +25,12 @@ pub fn recording_svg(set: &RecordingSet) -> String {
         let x = PANEL.0 * column as f64;
         let note = if run.note.is_empty() { String::new() } else { format!(": {}", run.note) };
         let title = format!("{} ({}){note}", run.file, run.role.key());
-        let _ = writeln!(svg, "<text x=\"{}\" y=\"52\" font-weight=\"bold\" fill=\"#444\">{}</text>", x + MARGIN.0, escape(&title));
+        let _ = writeln!(
+            svg,
+            "<text x=\"{}\" y=\"52\" font-weight=\"bold\" fill=\"#444\">{}</text>",
+            x + MARGIN.0,
+            escape(&title)
+        );
         for (row, (title, channels)) in rows.iter().enumerate() {
             let _ = writeln!(svg, "<g transform=\"translate({x},{})\">", HEAD + PANEL.1 * row as f64);
             add_panel(&mut svg, (&runs, run), title, channels);

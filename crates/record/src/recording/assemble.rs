@@ -118,7 +118,8 @@ fn sources<'a>(
             ignored.retain(|other| *other != mapping.column);
         }
     }
-    ignored.retain(|name| *name != manifest.time_column && Some(*name) != manifest.group.as_deref() && !name.is_empty());
+    ignored
+        .retain(|name| *name != manifest.time_column && Some(*name) != manifest.group.as_deref() && !name.is_empty());
     say_ignored(set, manifest, &ignored, file);
     if sources.is_empty() {
         let columns = listed(table.columns.iter().map(|c| c.name.as_str()));
@@ -131,21 +132,20 @@ fn sources<'a>(
     for (_, column, _) in sources.values() {
         table.numbers(column)?;
         if column.not_finite > 0 {
-            let what = format!("column \"{}\": {} cells are not finite and count as missing", column.name, column.not_finite);
+            let what =
+                format!("column \"{}\": {} cells are not finite and count as missing", column.name, column.not_finite);
             set.remarks.push(Remark::new(Severity::Warning, what).of_run(file));
         }
     }
-    let source = |(channel, (name, column, factor)): (&'a str, (ChannelName<'a>, &'a super::table::Column, f64))| Source {
-        channel,
-        name,
-        values: &column.values,
-        factor,
+    let source = |(channel, (name, column, factor)): (&'a str, (ChannelName<'a>, &'a super::table::Column, f64))| {
+        Source { channel, name, values: &column.values, factor }
     };
     Ok(sources.into_iter().map(source).collect())
 }
 
 fn say_ignored(set: &mut RecordingSet, manifest: &Manifest, ignored: &[&str], file: &str) {
-    let near: Vec<(&str, String)> = ignored.iter().filter_map(|name| Some((*name, channel_name::meant(name)?))).collect();
+    let near: Vec<(&str, String)> =
+        ignored.iter().filter_map(|name| Some((*name, channel_name::meant(name)?))).collect();
     for (name, meant) in &near {
         let what = format!("column \"{name}\" is no channel and is not read; did you mean \"{meant}\"?");
         set.remarks.push(Remark::new(Severity::Warning, what).of_run(file));
@@ -306,7 +306,10 @@ fn check_noise(set: &mut RecordingSet) {
 fn check_roles(set: &mut RecordingSet) {
     for (role, what) in [
         (super::Role::Fit, "no run has the role fit: nothing may be fitted"),
-        (super::Role::Holdout, "no run has the role holdout: a model fitted here is judged only by what it was fitted to"),
+        (
+            super::Role::Holdout,
+            "no run has the role holdout: a model fitted here is judged only by what it was fitted to",
+        ),
     ] {
         if set.runs_of(role).next().is_none() {
             set.remarks.push(Remark::new(Severity::Warning, what));

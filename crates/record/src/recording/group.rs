@@ -58,12 +58,14 @@ pub(super) fn choose(
         }
         if found == 0 {
             let values = listed(all.iter().map(|s| s.value.as_str()));
-            let problem = format!("[[run]] of {} chooses groups that the file does not have; it has {values}", entry.file);
+            let problem =
+                format!("[[run]] of {} chooses groups that the file does not have; it has {values}", entry.file);
             return Err(RecordError::table(&manifest.path, problem));
         }
     }
     let left: Vec<&str> = all.iter().zip(&owner).filter(|(_, o)| **o == usize::MAX).map(|(s, _)| &*s.value).collect();
-    let what = || format!("{} groups that no [[run]] chooses are not read: {}", left.len(), listed(left.iter().copied()));
+    let what =
+        || format!("{} groups that no [[run]] chooses are not read: {}", left.len(), listed(left.iter().copied()));
     Ok((owner, (!left.is_empty()).then(|| Remark::new(Severity::Note, what()))))
 }
 

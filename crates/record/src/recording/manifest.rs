@@ -180,7 +180,8 @@ impl Reader<'_> {
         let mut noise = BTreeMap::new();
         for (channel, value) in self.table_of(table, "noise")?.into_iter().flatten() {
             let sigma = number(value).filter(|sigma| sigma.is_finite() && *sigma >= 0.0).ok_or_else(|| {
-                let problem = format!("[noise] \"{channel}\" = {value} is not a standard deviation; it is a number, 0 or above");
+                let problem =
+                    format!("[noise] \"{channel}\" = {value} is not a standard deviation; it is a number, 0 or above");
                 self.wrong(channel, problem)
             })?;
             noise.insert(channel.clone(), sigma);
@@ -211,16 +212,17 @@ impl Reader<'_> {
         };
         self.check_keys(table, &place, &["column", "scale", "unit"])?;
         let column = self.text_of(table, "column", &place)?;
-        let column = column.ok_or_else(|| self.wrong(channel, format!("{place} has no column; name the file's column")))?;
+        let column =
+            column.ok_or_else(|| self.wrong(channel, format!("{place} has no column; name the file's column")))?;
         let unit = match self.text_of(table, "unit", &place)? {
             Some(unit) => self.factor(&unit, name.quantity.dimensions(), &place)?,
             None => 1.0,
         };
         let scale = match table.get("scale") {
             None => 1.0,
-            Some(value) => number(value).filter(|s| s.is_finite() && *s != 0.0).ok_or_else(|| {
-                self.wrong(channel, format!("{place}: scale = {value} is not a number other than 0"))
-            })?,
+            Some(value) => number(value)
+                .filter(|s| s.is_finite() && *s != 0.0)
+                .ok_or_else(|| self.wrong(channel, format!("{place}: scale = {value} is not a number other than 0")))?,
         };
         Ok(Mapping { column, factor: scale * unit })
     }
@@ -230,7 +232,8 @@ impl Reader<'_> {
         match units::find(unit) {
             Some(found) if dimensions.contains(&found.dimension) => Ok(found.in_si),
             Some(_) => {
-                let problem = format!("{place}: unit \"{unit}\" does not fit here; units that do: {}", fitting.join(", "));
+                let problem =
+                    format!("{place}: unit \"{unit}\" does not fit here; units that do: {}", fitting.join(", "));
                 Err(self.wrong(unit, problem))
             }
             None => {
@@ -273,12 +276,15 @@ impl Reader<'_> {
                 let near = hint(other, ["fit", "holdout"]);
                 return Err(self.wrong(other, format!("{place} ({file}): role = \"{other}\" is not known{near}")));
             }
-            None => return Err(self.wrong(&file, format!("{place} ({file}) has no role; it is \"fit\" or \"holdout\""))),
+            None => {
+                return Err(self.wrong(&file, format!("{place} ({file}) has no role; it is \"fit\" or \"holdout\"")));
+            }
         };
         let groups = match table.get("groups") {
             None => None,
             Some(_) if !grouped => {
-                let problem = format!("{place}: groups are chosen but [time] names no group column; add group = \"…\" there");
+                let problem =
+                    format!("{place}: groups are chosen but [time] names no group column; add group = \"…\" there");
                 return Err(self.wrong("groups", problem));
             }
             Some(value) => Some(self.groups(value, &place)?),
@@ -288,7 +294,8 @@ impl Reader<'_> {
 
     fn groups(&self, value: &Value, place: &str) -> Result<Vec<String>, RecordError> {
         let wrong = || {
-            let problem = format!("{place}: groups is a list of values and ranges of the group column, such as [\"0-99\", 120]");
+            let problem =
+                format!("{place}: groups is a list of values and ranges of the group column, such as [\"0-99\", 120]");
             self.wrong("groups", problem)
         };
         let Value::Array(items) = value else { return Err(wrong()) };

@@ -3,7 +3,8 @@
 //! Two lattices are looked for. **Decimal**: all values are multiples of 10⁻ᵏ (a fixed number of decimals), or all have
 //! d significant digits (then the step differs with the value and the root mean square is taken). **Encoder**: the
 //! differences of neighbouring samples are multiples of a step δ that is no power of ten, whatever the offset; δ is
-//! where C(δ) = mean cos(2π d/δ) over small differences d is near 1 (rounding to g on top lowers it to sinc²(g/δ)).
+//! where C(δ) = mean cos(2π d/δ) over small differences d is near 1 (rounding to g on top lowers it to sinc²(g/δ)). It is
+//! seen where neighbours differ by some tens of steps at most: a coarse encoder, or a joint that turns around.
 
 /// Samples that are looked at; more tell nothing new.
 const LOOKED_AT: usize = 4000;
@@ -122,7 +123,7 @@ fn encoder_step(values: &[f64]) -> Option<f64> {
     sizes.sort_unstable_by(f64::total_cmp);
     let smallest = *sizes.get(sizes.len() / 200)?;
     let mut step = mean(sizes.iter().copied().filter(|d| *d >= 0.9 * smallest && *d < 1.6 * smallest))?;
-    for reach in [4.5, 20.5] {
+    for reach in [2.5, 4.5, 9.5, 20.5] {
         let near: Vec<f64> = sizes.iter().copied().filter(|d| *d > 0.5 * step && *d < reach * step).collect();
         let counts = near.iter().map(|d| (d / step).round());
         let (along, across) = near.iter().zip(counts).fold((0.0, 0.0), |(a, b), (d, n)| (a + d * n, b + n * n));

@@ -49,12 +49,16 @@ impl Table {
             "parquet" | "pq" => load_parquet(path, group)?,
             "csv" | "txt" | "tsv" => load_csv(path, group)?,
             _ => {
-                let problem = format!("is neither .csv nor .parquet (its ending is \"{extension}\"); convert or rename it");
+                let problem =
+                    format!("is neither .csv nor .parquet (its ending is \"{extension}\"); convert or rename it");
                 return Err(RecordError::table(path, problem));
             }
         };
         if table.places.is_empty() {
-            return Err(RecordError::table(path, "holds no row of data; was the recording stopped at once, or the file cut?"));
+            return Err(RecordError::table(
+                path,
+                "holds no row of data; was the recording stopped at once, or the file cut?",
+            ));
         }
         Ok(table)
     }
@@ -214,7 +218,13 @@ fn quoted_cells(line: &str, comma: char) -> Vec<String> {
 fn load_parquet(path: &Path, group: Option<&str>) -> Result<Table, RecordError> {
     let file = File::open(path).map_err(RecordError::read(path))?;
     let wrong = |error: &dyn std::fmt::Display| {
-        let problem = format!("not a whole Parquet file ({error}); copy it again, or ask for it anew");
+        let text = error.to_string();
+        let problem = match text.contains("Disabled feature") {
+            true => format!(
+                "is compressed in a way that is not read here ({text}); write it with snappy, zstd, gzip or lz4"
+            ),
+            false => format!("not a whole Parquet file ({text}); copy it again, or ask for it anew"),
+        };
         RecordError::table(path, problem)
     };
     let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| wrong(&e))?;
