@@ -6,7 +6,7 @@ use crate::tape::Tape;
 use contact::{Normal, NormalLaw};
 use friction::Friction;
 use multibody::JointKind;
-use sim::{ActuatorKind, Base};
+use sim::ActuatorKind;
 use spatial::{Mat3, Vec3};
 
 /// Places at which effects could act.
@@ -139,7 +139,7 @@ fn bodies(built: &Built) -> Vec<BodyFact> {
     for vehicle in &built.model.vehicles {
         for (l, link) in vehicle.tree.links.iter().enumerate().filter(|(_, l)| l.inertia.mass > 0.0) {
             let is_base = link.body == 0 && l == 0;
-            if link.body == 0 && vehicle.base == Base::Fixed {
+            if link.body == 0 && vehicle.base.is_held() {
                 continue;
             }
             let mask = if is_base { vehicle.base.mask() } else { [false; 6] };

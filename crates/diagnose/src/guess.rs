@@ -8,7 +8,6 @@ use crate::reading::{LinkPlace, Quantity, Reading, Value};
 use crate::start::Start;
 use crate::tape::Tape;
 use nalgebra::{Matrix3, Vector3};
-use sim::Base;
 use spatial::{Rot, Twist, Vec3, exp_rotation, log_rotation};
 
 /// Samples that a guess looks at.
@@ -17,7 +16,7 @@ const NEAREST: usize = 15;
 /// The start of a replay at `time`, guessed.
 pub fn guess(built: &Built, tape: &Tape, time: f64) -> Start {
     let mut start = Start { time, ..Start::nominal(built) };
-    for (v, vehicle) in built.model.vehicles.iter().enumerate().filter(|(_, v)| v.base != Base::Fixed) {
+    for (v, vehicle) in built.model.vehicles.iter().enumerate().filter(|(_, v)| !v.base.is_held()) {
         let of_base = |p: LinkPlace| p.vehicle == v && vehicle.tree.links[p.link].body == 0 && p.link == 0;
         guess_base(&mut start, v, tape, time, of_base);
         mask_twist(&mut start.twists[v], &vehicle.base.mask());
@@ -34,6 +33,9 @@ pub fn guess(built: &Built, tape: &Tape, time: f64) -> Start {
             Quantity::JointVelocity { v, .. } => start.v[v] = fit_vector(reading, time).0.x,
             _ => {}
         }
+    }
+    if time > tape.span.0 {
+        start.free_bristles(built, tape.index);
     }
     start
 }

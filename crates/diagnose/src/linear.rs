@@ -114,12 +114,13 @@ impl Stage<'_> {
         variations: &[Variation],
         steps: &mut Steps,
     ) -> Vec<SegmentLinear> {
-        let all = freedoms(built);
-        let first: Vec<Vec<f64>> = segments.iter().map(|s| steps.of(s.run, &all)).collect();
+        let first: Vec<Vec<f64>> = segments.iter().map(|s| steps.of(s.run, &freedoms(built, &s.start))).collect();
         let done: Vec<(SegmentLinear, Vec<f64>)> = segments
             .par_iter()
             .zip(first)
-            .map(|(segment, sizes)| self.linearise_segment(built, segment, variations, (&all, sizes)))
+            .map(|(segment, sizes)| {
+                self.linearise_segment(built, segment, variations, (&freedoms(built, &segment.start), sizes))
+            })
             .collect();
         for (segment, (_, sizes)) in segments.iter().zip(&done) {
             steps.keep(segment.run, sizes);

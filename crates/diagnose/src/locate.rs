@@ -159,7 +159,7 @@ pub fn locate(stage: &Stage<'_>, plant: &Plant, fit: &Fit, places: Vec<Place>) -
         .segments
         .par_iter()
         .map(|segment| {
-            let all = freedoms(&fit.built);
+            let all = freedoms(&fit.built, &segment.start);
             let r = stage.residuals(&fit.built, segment);
             let s = stage.start_columns(&fit.built, segment, &r, &all, &mut Steps::default());
             let columns: Vec<Vec<DVector<f64>>> =

@@ -1,19 +1,24 @@
 //! The scenario with a set of effects, built for replay.
 
 use crate::error::DiagnoseError;
-use crate::reading::{LinkPlace, Quantity, SensorFault};
+use crate::reading::{LinkPlace, Quantity};
 use multibody::JointKind;
+use record::{RecordedRun, RecordingSet};
 use scenario::Scenario;
+use scenario::measure::{Gauge, SensorModel};
 use scenario::spec::{Effect, ParamValue};
-use sim::{ActuatorKind, Model, State};
-use spatial::Vec3;
+use sim::{ActuatorKind, DriveAxis, DrivePath, Model, State};
 use std::sync::Arc;
 
-/// A scenario whose `[[effect]]` entries are varied.
+/// A scenario whose `[[effect]]` entries are varied, with what the recording says about it.
 #[derive(Clone, Debug)]
 pub struct Plant {
     /// The nominal scenario; its own effects belong to the nominal model.
     pub scenario: Scenario,
+    /// Vector channels that are read.
+    pub channels: Vec<String>,
+    /// By run: paths of the driven coordinates.
+    pub drives: Vec<Vec<Arc<DrivePath>>>,
 }
 
 /// A built set of effects.
@@ -21,62 +26,90 @@ pub struct Plant {
 pub struct Built {
     /// The world's immutable part.
     pub model: Arc<Model>,
+    /// The same on each run's drive paths; empty where nothing is driven.
+    pub by_run: Vec<Arc<Model>>,
     /// The state that the scenario starts in.
     pub start: State,
-    /// Faults of sensors by channel prefix.
-    pub faults: Vec<(String, SensorFault)>,
+    /// What each channel reads, and the faults of its sensor.
+    pub sensors: Vec<(String, Gauge, SensorModel)>,
     /// Longest delay of an actuator, s.
     pub delay: f64,
 }
 
 impl Plant {
+    /// The scenario alone, before a recording is read.
+    pub fn new(scenario: Scenario) -> Self {
+        Self { scenario, channels: Vec::new(), drives: Vec::new() }
+    }
+
+    /// Takes channels and drive paths of a recording.
+    pub fn attach(&mut self, set: &RecordingSet, model: &Model, channels: Vec<String>) -> Result<(), DiagnoseError> {
+        self.channels = channels;
+        if model.drives.is_empty() {
+            return Ok(());
+        }
+        let of_run = |run: &RecordedRun| -> Result<Vec<Arc<DrivePath>>, DiagnoseError> {
+            model.driven_coordinates().map(|(name, axis)| drive_path(set, run, name, axis)).collect()
+        };
+        self.drives = set.runs.iter().map(of_run).collect::<Result<_, _>>()?;
+        Ok(())
+    }
+
     /// Builds the nominal scenario with `effects` added to its own.
     pub fn build(&self, effects: &[Effect]) -> Result<Built, DiagnoseError> {
         let mut scenario = self.scenario.clone();
-        let (faults, physics): (Vec<&Effect>, Vec<&Effect>) =
-            effects.iter().partition(|e| e.name.starts_with("sensor-"));
-        scenario.effects.extend(physics.into_iter().cloned());
+        scenario.effects.extend(effects.iter().cloned());
         let mission = scenario::build(&scenario)?;
+        let model = Arc::clone(mission.world.model());
         let late = scenario.effects.iter().filter(|e| e.name == "actuator-delay");
         let delays = late.filter_map(|e| e.params.get("delay").and_then(ParamValue::number));
+        let sensor = |channel: &String| {
+            let gauge = Gauge::resolve(&scenario, &model, channel).ok()?;
+            Some((channel.clone(), gauge, SensorModel::of(&scenario.effects, channel)))
+        };
         Ok(Built {
-            model: Arc::clone(mission.world.model()),
+            by_run: self.drives.iter().map(|paths| Arc::new(model.with_drive_paths(paths.iter().cloned()))).collect(),
             start: mission.world.state().clone(),
-            faults: collect_faults(&faults),
+            sensors: self.channels.iter().filter_map(sensor).collect(),
             delay: delays.fold(0.0, f64::max),
+            model,
         })
     }
 }
 
-/// Faults by channel; several effects on one sensor come together.
-fn collect_faults(effects: &[&Effect]) -> Vec<(String, SensorFault)> {
-    let mut all: Vec<(String, SensorFault)> = Vec::new();
-    for effect in effects {
-        let channel = effect.place.trim_start_matches("sensor:").to_owned();
-        if !all.iter().any(|(c, _)| *c == channel) {
-            all.push((channel.clone(), SensorFault::default()));
-        }
-        let Some((_, fault)) = all.iter_mut().find(|(c, _)| *c == channel) else { continue };
-        let number = |key: &str| effect.params.get(key).and_then(ParamValue::number);
-        let vector = |key: &str| {
-            let values = effect.params.get(key).and_then(ParamValue::numbers).unwrap_or(&[]);
-            Vec3::from_fn(|k, _| values.get(k).copied().unwrap_or(0.0))
-        };
-        fault.bias += vector("bias");
-        fault.scale *= number("scale").unwrap_or(1.0);
-        fault.delay += number("delay").unwrap_or(0.0);
-        fault.angle += vector("angle");
-    }
-    all
+/// The motion behind a recorded drive.
+fn drive_path(
+    set: &RecordingSet,
+    run: &RecordedRun,
+    name: &str,
+    axis: DriveAxis,
+) -> Result<Arc<DrivePath>, DiagnoseError> {
+    let component = match axis {
+        DriveAxis::X => "position.x",
+        DriveAxis::Y => "position.y",
+        DriveAxis::Z => "position.z",
+        DriveAxis::AboutZ => "angle",
+    };
+    let channel = format!("drive.{name}.{component}");
+    let series = run.series(&channel).ok_or_else(|| DiagnoseError::Channel {
+        channel: channel.clone(),
+        file: run.file.clone(),
+        reason: "is missing, and it is what moves the drive; record it, or map its column".to_owned(),
+    })?;
+    let quantum = series.quantum();
+    let noise = set.sigma(&channel).map(|s| (s * s + quantum * quantum / 12.0).sqrt());
+    Ok(Arc::new(DrivePath::smoothed(&series.times, &series.values, noise)))
 }
 
 impl Built {
-    /// Fault of the sensor behind a channel.
-    pub fn fault(&self, channel: &str) -> SensorFault {
-        self.faults
-            .iter()
-            .find(|(prefix, _)| channel.starts_with(prefix.as_str()))
-            .map_or_else(SensorFault::default, |f| f.1)
+    /// The model on a run's drive paths.
+    pub fn model_of(&self, run: usize) -> &Arc<Model> {
+        self.by_run.get(run).unwrap_or(&self.model)
+    }
+
+    /// What a channel reads, and the faults of its sensor.
+    pub fn sensor(&self, channel: &str) -> Option<(Gauge, SensorModel)> {
+        self.sensors.iter().find(|(c, ..)| c == channel).map(|(_, gauge, model)| (*gauge, *model))
     }
 
     /// What a vector channel (without its component) measures; `None` where the scenario has nothing of that name.
@@ -90,6 +123,8 @@ impl Built {
             ("body", "orientation") => self.link(name).map(Quantity::Orientation),
             ("body", "linear_velocity") => self.link(name).map(Quantity::LinearVelocity),
             ("body", "angular_velocity") => self.link(name).map(Quantity::AngularVelocity),
+            ("sensor", "force") => Some(Quantity::Force),
+            ("sensor", "torque") => Some(Quantity::Torque),
             _ => None,
         }
     }

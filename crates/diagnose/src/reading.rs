@@ -8,8 +8,7 @@
 //!
 //!   y(t) = scale · exp(angle)ᵀ x(t − delay) + bias,    an orientation q(t − delay) exp(angle).
 
-use sim::World;
-use spatial::{Rot, Vec3, exp_rotation, log_rotation};
+use spatial::{Rot, Vec3, log_rotation};
 
 /// What is read from the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,10 +35,10 @@ pub enum Quantity {
     LinearVelocity(LinkPlace),
     /// Angular velocity of a link, link axes, rad/s.
     AngularVelocity(LinkPlace),
-    /// Force of a sensor, N, by the sensor's index.
-    Force(usize),
-    /// Moment of a sensor, N·m, by the sensor's index.
-    Torque(usize),
+    /// Force of a sensor, N.
+    Force,
+    /// Moment of a sensor, N·m.
+    Torque,
 }
 
 /// A link of a vehicle.
@@ -59,51 +58,27 @@ impl Quantity {
 
     /// Whether it is a force or moment, which changes at once when contact begins.
     pub fn is_force(&self) -> bool {
-        matches!(self, Self::Force(_) | Self::Torque(_))
+        matches!(self, Self::Force | Self::Torque)
     }
 }
 
-/// A fault of one sensor; the default is none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SensorFault {
-    /// Added to the reading, its unit.
-    pub bias: Vec3,
-    /// Factor.
-    pub scale: f64,
-    /// Age of the value when it is read, s.
-    pub delay: f64,
-    /// Rotation vector of the true sensor in its nominal frame, rad.
-    pub angle: Vec3,
-}
-
-impl Default for SensorFault {
-    fn default() -> Self {
-        Self { bias: Vec3::zeros(), scale: 1.0, delay: 0.0, angle: Vec3::zeros() }
-    }
-}
-
-impl SensorFault {
-    /// What the faulty sensor makes of a vector or scalar (in x).
-    pub fn apply(&self, value: &Vec3) -> Vec3 {
-        if *self == Self::default() {
-            return *value;
-        }
-        exp_rotation(&self.angle).inverse_transform_vector(value) * self.scale + self.bias
-    }
-
-    /// What it makes of an orientation.
-    pub fn apply_rotation(&self, value: &Rot) -> Rot {
-        if self.angle == Vec3::zeros() { *value } else { value * exp_rotation(&self.angle) }
-    }
-}
-
-/// A value of the world at an instant.
+/// A value, with a scalar in x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
-    /// A vector; a scalar stands in x.
+    /// A vector.
     Vector(Vec3),
     /// An orientation.
     Rotation(Rot),
+}
+
+impl From<scenario::measure::Reading> for Value {
+    fn from(reading: scenario::measure::Reading) -> Self {
+        match reading {
+            scenario::measure::Reading::Scalar(x) => Self::Vector(Vec3::new(x, 0.0, 0.0)),
+            scenario::measure::Reading::Vector(v) => Self::Vector(v),
+            scenario::measure::Reading::Rotation(q) => Self::Rotation(q),
+        }
+    }
 }
 
 /// What a recording measured of one quantity.
@@ -145,22 +120,5 @@ impl Reading {
             _ => Vec3::repeat(f64::NAN),
         };
         out.iter_mut().zip(&self.axes).for_each(|(r, &axis)| *r = difference[axis] / self.sigma);
-    }
-}
-
-/// Reads a kinematic quantity; forces are the sensors' business.
-pub fn read_motion(quantity: Quantity, world: &World) -> Value {
-    let x = |value: f64| Value::Vector(Vec3::new(value, 0.0, 0.0));
-    match quantity {
-        Quantity::JointPosition { v, .. } => x(world.motor_side(v).0),
-        Quantity::JointVelocity { v, .. } => x(world.motor_side(v).1),
-        Quantity::Position(p) => Value::Vector(world.link_frame(p.vehicle, p.link).pos),
-        Quantity::Orientation(p) => Value::Rotation(world.link_frame(p.vehicle, p.link).to_pose().rotation),
-        Quantity::LinearVelocity(p) => Value::Vector(world.link_twist(p.vehicle, p.link).lin),
-        Quantity::AngularVelocity(p) => {
-            let frame = world.link_frame(p.vehicle, p.link);
-            Value::Vector(frame.rot.tr_mul(&world.link_twist(p.vehicle, p.link).ang))
-        }
-        Quantity::Force(_) | Quantity::Torque(_) => Value::Vector(Vec3::zeros()),
     }
 }

@@ -5,9 +5,10 @@
 
 use crate::error::DiagnoseError;
 use crate::plant::Built;
-use crate::reading::{Quantity, SensorFault, Value, read_motion};
+use crate::reading::Value;
 use crate::start::Start;
 use crate::tape::{Event, Tape};
+use scenario::measure::{Gauge, SensorModel};
 use sim::World;
 
 /// A stretch of a run, replayed from a start of its own.
@@ -49,9 +50,13 @@ pub fn observe(
     pace: Pace,
     mut look: impl FnMut(usize, &Event, &Value),
 ) -> Result<(), DiagnoseError> {
-    let faults: Vec<SensorFault> = tape.readings.iter().map(|r| built.fault(&r.channel)).collect();
-    let events = events_in(tape, span, &faults);
-    let mut world = start.world(built);
+    let sensors: Vec<(Gauge, SensorModel)> = tape.readings.iter().filter_map(|r| built.sensor(&r.channel)).collect();
+    if sensors.len() < tape.readings.len() {
+        let what = "a channel is not measured in this model".to_owned();
+        return Err(DiagnoseError::Replay { file: tape.file.clone(), what });
+    }
+    let events = events_in(tape, span, &sensors);
+    let mut world = start.world(built, tape.index);
     let mut feed = Feed::new(tape, span.from);
     hear_the_past(built, tape, span.from, &mut world);
     feed.apply(&mut world);
@@ -63,13 +68,11 @@ pub fn observe(
             feed.apply(&mut world);
         }
         advance_to(&mut world, event.time, pace).map_err(|what| gone(tape, what))?;
-        let r = event.reading as usize;
-        let value = read(built, &world, tape.readings[r].quantity);
-        let value = match value {
-            Value::Vector(v) => Value::Vector(faults[r].apply(&v)),
-            Value::Rotation(q) => Value::Rotation(faults[r].apply_rotation(&q)),
-        };
-        look(*i, event, &value);
+        let (gauge, sensor) = &sensors[event.reading as usize];
+        if gauge.reads_contact() {
+            world.refresh_touches();
+        }
+        look(*i, event, &Value::from(sensor.apply(&gauge.read(&world))));
     }
     Ok(())
 }
@@ -87,10 +90,6 @@ fn hear_the_past(built: &Built, tape: &Tape, from: f64, world: &mut World) {
     };
     let past: Vec<_> = tape.ticks[first..].iter().take_while(|t| **t < from - SAME).map(heard).collect();
     world.recall_commands(past.iter().map(|(time, commands)| (*time, commands.as_slice())));
-}
-
-fn read(_built: &Built, world: &World, quantity: Quantity) -> Value {
-    read_motion(quantity, world)
 }
 
 fn gone(tape: &Tape, error: sim::StepError) -> DiagnoseError {
@@ -112,11 +111,11 @@ fn advance_to(world: &mut World, time: f64, pace: Pace) -> Result<(), sim::StepE
 }
 
 /// The events of a span with their numbers, in the order of the instants they tell of: late sensors read what was.
-fn events_in(tape: &Tape, span: Span, faults: &[SensorFault]) -> Vec<(usize, Event)> {
+fn events_in(tape: &Tape, span: Span, sensors: &[(Gauge, SensorModel)]) -> Vec<(usize, Event)> {
     let late =
-        |(i, e): (usize, &Event)| (i, Event { time: (e.time - faults[e.reading as usize].delay).max(span.from), ..*e });
+        |(i, e): (usize, &Event)| (i, Event { time: (e.time - sensors[e.reading as usize].1.delay).max(span.from), ..*e });
     let mut events: Vec<_> = tape.events[tape.range(span)].iter().enumerate().map(late).collect();
-    if faults.iter().any(|f| f.delay != 0.0) {
+    if sensors.iter().any(|(_, s)| s.delay != 0.0) {
         events.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
     }
     events

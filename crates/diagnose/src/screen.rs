@@ -142,7 +142,7 @@ fn products_of(
     active: &[Variation],
     probes: &[Vec<Probe>],
 ) -> Vec<DMatrix<f64>> {
-    let base = freedoms(&fit.built);
+    let base = freedoms(&fit.built, &segment.start);
     let r = stage.residuals(&fit.built, segment);
     let mut steps = Steps::default();
     let s = stage.start_columns(&fit.built, segment, &r, &base, &mut steps);
@@ -162,7 +162,7 @@ fn products_of(
 fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: Option<&Probe>) -> Vec<DVector<f64>> {
     let Some(probe) = probe else { return Vec::new() };
     let built = &probe.variation.built;
-    let own: Vec<Freedom> = freedoms(built).into_iter().filter(|f| !base.contains(f)).collect();
+    let own: Vec<Freedom> = freedoms(built, &segment.start.fitted_to(built)).into_iter().filter(|f| !base.contains(f)).collect();
     if own.is_empty() {
         return Vec::new();
     }

@@ -4,9 +4,14 @@
 //! is free: turn of each base (rotation vector, W axes), place of its origin, spin, speed; joint coordinates; joint rates; memory of effects.
 
 use crate::plant::Built;
-use sim::{Base, World};
+use friction::Friction;
+use sim::World;
 use spatial::{Pose, Twist, Vec3, exp_rotation};
+use std::cell::RefCell;
 use std::sync::Arc;
+
+/// Slip below which a bristle counts as on its way, m/s.
+const CRAWL: f64 = 1e-4;
 
 /// Where a replay starts.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +28,8 @@ pub struct Start {
     pub v: Vec<f64>,
     /// Deviation of the effects' memory from its rest, by slot.
     pub memory: Vec<f64>,
+    /// Deflections of the bristles that touch at the start, W axes, m; empty where all begin unloaded.
+    pub bristles: Vec<Vec3>,
 }
 
 /// One free coordinate of a start.
@@ -42,6 +49,8 @@ pub enum Freedom {
     Rate(usize),
     /// Memory slot of an effect.
     Memory(usize),
+    /// Deflection of a bristle along an axis of W.
+    Bristle(usize, usize),
 }
 
 impl Freedom {
@@ -51,6 +60,7 @@ impl Freedom {
             Self::Turn(..) | Self::Place(..) | Self::Joint(_) => 1e-6,
             Self::Spin(..) | Self::Speed(..) | Self::Rate(_) => 1e-6,
             Self::Memory(_) => 1e-5,
+            Self::Bristle(..) => 1e-8,
         }
     }
 }
@@ -68,6 +78,7 @@ impl Start {
             q: state.q.clone(),
             v: state.v.clone(),
             memory: vec![0.0; count_memory(built)],
+            bristles: Vec::new(),
         }
     }
 
@@ -85,22 +96,38 @@ impl Start {
     }
 
     /// A world at this start.
-    pub fn world(&self, built: &Built) -> World {
+    pub fn world(&self, built: &Built, run: usize) -> World {
         let mut state = built.start.clone();
         state.time = self.time;
         state.bases.clone_from(&self.bases);
         state.q.clone_from(&self.q);
         state.v.clone_from(&self.v);
-        let mut world = World::new(Arc::clone(&built.model), state);
+        let mut world = World::new(Arc::clone(built.model_of(run)), state);
         world.set_base_twists(&self.twists);
+        if !self.bristles.is_empty() {
+            world.seed_bristles(|i, _| self.bristles.get(i).copied().unwrap_or_default());
+        }
         world
+    }
+
+    /// Frees the bristles of the points that touch, each dragged along where its point slides.
+    pub fn free_bristles(&mut self, built: &Built, run: usize) {
+        let mut world = self.world(built, run);
+        let reach = RefCell::new(Vec::new());
+        world.seed_bristles(|_, touch| {
+            reach.borrow_mut().push((touch.pair, touch.normal_force, touch.point_w));
+            Vec3::zeros()
+        });
+        self.bristles = reach.into_inner().iter().map(|(pair, force, point)| dragged(&world, *pair, *force, point)).collect();
     }
 
     /// Sets the memory of effects: its rest under the world's present commands, and the deviation from it.
     pub fn set_memory(&self, world: &mut World) {
         world.settle_effects();
         if self.memory.iter().any(|m| *m != 0.0) {
-            world.state_mut().effects.iter_mut().zip(&self.memory).for_each(|(e, m)| *e += m);
+            let rest = world.effect_memory();
+            let moved: Vec<f64> = rest.iter().zip(&self.memory).map(|(e, m)| e + m).collect();
+            world.set_effect_memory(&moved);
         }
     }
 
@@ -128,6 +155,7 @@ impl Start {
             Freedom::Joint(i) => self.q[i] += by,
             Freedom::Rate(i) => self.v[i] += by,
             Freedom::Memory(i) => self.memory[i] += by,
+            Freedom::Bristle(i, axis) => self.bristles[i] += along(axis),
         }
     }
 }
@@ -136,11 +164,26 @@ fn count_memory(built: &Built) -> usize {
     built.start.effects.len()
 }
 
+/// Where a sliding point's bristle is: at its bound, along the slip; in the middle where it hardly moves.
+fn dragged(world: &World, pair: usize, normal_force: f64, point: &Vec3) -> Vec3 {
+    let model = world.model();
+    let Some(Friction::Bristle(law)) = model.laws[pair].friction else { return Vec3::zeros() };
+    let (a, b) = model.pair_bodies(pair);
+    let velocity = |body: usize| {
+        model.owners.get(body).map_or(Vec3::zeros(), |&(vehicle, local)| {
+            let kin = world.kinematics(vehicle);
+            kin.vel[local].at(&(point - kin.anchor))
+        })
+    };
+    let slip = velocity(b) - velocity(a);
+    slip / (slip.norm() + CRAWL) * law.calc_reach(normal_force, 0.0)
+}
+
 /// The coordinates of a start that are free in a model.
-pub fn freedoms(built: &Built) -> Vec<Freedom> {
+pub fn freedoms(built: &Built, start: &Start) -> Vec<Freedom> {
     let model = &built.model;
     let mut all = Vec::new();
-    for (b, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| v.base != Base::Fixed) {
+    for (b, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| !v.base.is_held()) {
         let mask = vehicle.base.mask();
         let kinds: [(fn(usize, usize) -> Freedom, usize); 4] =
             [(Freedom::Turn, 0), (Freedom::Place, 3), (Freedom::Spin, 0), (Freedom::Speed, 3)];
@@ -152,5 +195,6 @@ pub fn freedoms(built: &Built) -> Vec<Freedom> {
     all.extend(scalar().map(|(_, c)| Freedom::Joint(c.q_index)));
     all.extend(scalar().map(|(i, _)| Freedom::Rate(i)));
     all.extend((0..count_memory(built)).map(Freedom::Memory));
+    all.extend((0..start.bristles.len()).flat_map(|i| (0..3).map(move |axis| Freedom::Bristle(i, axis))));
     all
 }

@@ -33,6 +33,8 @@ pub struct Event {
 /// One run.
 #[derive(Clone, Debug)]
 pub struct Tape {
+    /// Number of the run in its set.
+    pub index: usize,
     /// File of the run.
     pub file: String,
     /// Whether it may be used to find and fit a model.
@@ -94,7 +96,8 @@ impl Tape {
             };
             readings.extend(readings_of(set, prefix, quantity, group));
         }
-        Ok(Self::assemble(run, commands, readings))
+        let index = set.runs.iter().position(|r| r.file == run.file && r.note == run.note).unwrap_or(0);
+        Ok(Self { index, ..Self::assemble(run, commands, readings) })
     }
 
     fn assemble(run: &RecordedRun, commands: Vec<CommandTape>, readings: Vec<Reading>) -> Self {
@@ -112,7 +115,7 @@ impl Tape {
         for event in &events {
             offsets.push(offsets[offsets.len() - 1] + readings[event.reading as usize].width());
         }
-        Self { file: run.file.clone(), role: run.role, commands, readings, events, offsets, ticks, span }
+        Self { index: 0, file: run.file.clone(), role: run.role, commands, readings, events, offsets, ticks, span }
     }
 
     /// The events of a span: those at its end belong to the next, but for the run's last.

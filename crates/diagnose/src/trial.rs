@@ -17,9 +17,11 @@ pub fn run(scenario: Scenario, set: &RecordingSet) -> Result<(), DiagnoseError> 
     let t0 = std::time::Instant::now();
     let window: Option<f64> = std::env::var("W").ok().and_then(|w| w.parse().ok());
     let step: f64 = std::env::var("H").ok().and_then(|w| w.parse().ok()).unwrap_or(scenario.integrator.step_s);
-    let plant = Plant { scenario };
+    let mut plant = Plant::new(scenario);
     let built = plant.build(&[])?;
     let tapes: Vec<Tape> = set.runs.iter().map(|r| Tape::new(set, r, &built)).collect::<Result<_, _>>()?;
+    plant.attach(set, &built.model, tapes[0].readings.iter().map(|r| r.channel.clone()).collect())?;
+    let built = plant.build(&[])?;
     for t in &tapes {
         println!("{} {:?} {} scalars span {:?}", t.file, t.role, t.count_scalars(), t.span);
     }

@@ -5,7 +5,7 @@ use crate::effect;
 use crate::error::StepError;
 use crate::mechanism::{self, MechanismKind, MechanismMemory, MechanismReport};
 use crate::model::{Integrator, Model};
-use crate::state::State;
+use crate::state::{ContactMemory, State};
 use crate::step::{self, Scheme};
 use crate::workspace::{Workspace, calc_world_momentum};
 use crate::{Command, rk4};
@@ -318,6 +318,32 @@ impl World {
     pub fn refresh_touches(&mut self) {
         self.refresh();
         rk4::refresh_touches(&self.model, &self.state, &mut self.ws);
+    }
+
+    /// Gives the points that touch at the present state their bristles: `deflection` of a point, W axes, m, of which the part
+    /// in its tangent plane counts. Points of laws without memory are passed over.
+    pub fn seed_bristles(&mut self, deflection: impl Fn(usize, &TouchReport) -> Vec3) {
+        self.state_mut().bristles.clear();
+        self.refresh_touches();
+        let reports: Vec<TouchReport> = self.touches().collect();
+        let mut seeded = 0;
+        for (touch, report) in self.ws.touches.iter().zip(&reports) {
+            if !self.model.laws[touch.pair as usize].remembers() || report.gap >= 0.0 {
+                continue;
+            }
+            let (s, normal_w) = (deflection(seeded, report), touch.normal);
+            seeded += 1;
+            self.state.bristles.push(ContactMemory {
+                pair: touch.pair,
+                feature: touch.feature,
+                s_w: s - normal_w * normal_w.dot(&s),
+                normal_w,
+                turn_w: Vec3::zeros(),
+                rest: touch.rest,
+                point_b: touch.local_b,
+            });
+        }
+        self.state.bristles.sort_by_key(|m| (m.pair, m.feature));
     }
 
     /// The points that touched in the last step.
