@@ -190,3 +190,31 @@ fn view_shows_a_robot_and_a_scenario() {
         assert!(fs::metadata(out.join("view.rrd")).unwrap().len() > 10_000);
     }
 }
+
+#[test]
+fn score_judges_a_folder_and_its_status_says_whether_all_is_met() {
+    let dir = tempfile::tempdir().unwrap();
+    let (keys, diagnoses) = (place(&dir, "keys"), place(&dir, "out"));
+    fs::create_dir_all(&keys).unwrap();
+    fs::create_dir_all(diagnoses.join("a")).unwrap();
+    fs::write(keys.join("a.json"), r#"{"effects": [], "oracle": {"true": 1.0}}"#).unwrap();
+    let error = r#"{"before": 1.0, "after": 1.0}"#;
+    let diagnosis = |verdict: &str| {
+        format!(
+            r#"{{"verdict": "{verdict}", "located": [], "effects": [],
+                "error": {{"fit": {error}, "holdout": {error}, "window_s": 1, "windowed": {error}, "runs": []}}}}"#
+        )
+    };
+    for (verdict, status) in [("no-mismatch", 0), ("unknown", 1)] {
+        fs::write(diagnoses.join("a/diagnosis.json"), diagnosis(verdict)).unwrap();
+        let output = softdock(&["score", text(&diagnoses), text(&keys)]);
+        assert_eq!(output.status.code(), Some(status), "{}", error_of(&output));
+        assert!(String::from_utf8_lossy(&output.stdout).contains(verdict));
+    }
+    let json = softdock(&["score", text(&diagnoses), text(&keys), "--json"]).stdout;
+    assert_eq!(serde_json::from_slice::<serde_json::Value>(&json).unwrap()["holds"], false);
+    assert_eq!(softdock(&["score", text(&diagnoses), text(&place(&dir, "nowhere"))]).status.code(), Some(3));
+    let schema = softdock(&["schema", "--diagnosis"]).stdout;
+    let schema: serde_json::Value = serde_json::from_slice(&schema).unwrap();
+    assert!(schema["properties"]["verdict"].is_object());
+}

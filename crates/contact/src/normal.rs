@@ -4,6 +4,7 @@
 //!
 //!   Hunt–Crossley    fₙ = k δⁿ (1 + d δ̇),    both brackets clamped at zero       (Hunt and Crossley 1975)
 //!   spring-damper    fₙ = max(0, k δ + c δ̇)  for δ > 0, else 0
+//!   constant         fₙ = f₀, whatever the gap: a weight that a guide holds against a surface
 //!   adhesion         f  = fₙ − p  for δ > 0, p: pull-off force, N; zero is neutral and changes no bit
 //!
 //! fₙ is never attractive; adhesion is a part of its own, so that friction may use fₙ alone. Sign: a positive force
@@ -34,6 +35,11 @@ pub enum NormalLaw {
         /// c, N·s/m.
         damping: f64,
     },
+    /// fₙ = f₀ at every gap: what presses is known and nothing gives way.
+    Constant {
+        /// f₀, N.
+        force: f64,
+    },
 }
 
 /// A normal law with adhesion.
@@ -60,6 +66,9 @@ impl NormalLaw {
     /// Repulsive force at `gap` (m, negative = penetration) and `gap_rate` (m/s); never negative.
     #[inline]
     pub fn eval(&self, gap: f64, gap_rate: f64) -> NormalForce {
+        if let Self::Constant { force } = *self {
+            return NormalForce { force, ..NormalForce::default() };
+        }
         let (depth, rate) = (-gap, -gap_rate);
         // Written so that NaN gives no force here: the step reports divergence from the state, with time and body.
         if depth.is_nan() || depth <= 0.0 {
@@ -86,6 +95,7 @@ impl NormalLaw {
                 }
                 NormalForce { force, d_gap: -stiffness, d_rate: -damping }
             }
+            Self::Constant { force } => NormalForce { force, ..NormalForce::default() },
         }
     }
 
@@ -95,6 +105,7 @@ impl NormalLaw {
         match *self {
             Self::HuntCrossley { stiffness, exponent, .. } => stiffness * depth.powf(exponent + 1.0) / (exponent + 1.0),
             Self::SpringDamper { stiffness, .. } => 0.5 * stiffness * depth * depth,
+            Self::Constant { .. } => 0.0,
         }
     }
 
@@ -109,6 +120,7 @@ impl NormalLaw {
                 check_range("stiffness", stiffness, stiffness > 0.0, "finite and greater than 0 N/m")?;
                 check_range("damping", damping, damping >= 0.0, "finite and at least 0 N·s/m")
             }
+            Self::Constant { force } => check_range("force", force, force >= 0.0, "finite and at least 0 N"),
         }
     }
 }
@@ -127,6 +139,18 @@ impl Normal {
             out.force -= self.adhesion;
         }
         out
+    }
+
+    /// The repulsive part alone, N: what friction is bounded by.
+    #[inline]
+    pub fn calc_compression(&self, gap: f64, gap_rate: f64) -> f64 {
+        self.law.eval(gap, gap_rate).force
+    }
+
+    /// What adhesion takes off the repulsion at a gap, N.
+    #[inline]
+    pub fn adhesion_at(&self, gap: f64) -> f64 {
+        if gap < 0.0 { self.adhesion } else { 0.0 }
     }
 
     /// Energy stored in the spring at `gap`, J, less the work that adhesion has to be paid to part: k δⁿ⁺¹/(n+1) − p δ.

@@ -123,6 +123,12 @@ impl Scene {
         self.pairs[pair].iter().any(|&c| self.parts[c].iter().any(crate::bed_points::is_bed))
     }
 
+    /// Takes a pair from those that are looked at; it keeps its number.
+    pub fn ignore(&mut self, pair: usize) {
+        let (n, [a, b]) = (self.colliders.len(), self.pairs[pair]);
+        self.pair_of[a.min(b) * n + a.max(b)] = NONE;
+    }
+
     /// The colliders.
     pub fn colliders(&self) -> &[Collider] {
         &self.colliders

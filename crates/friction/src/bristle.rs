@@ -7,12 +7,12 @@
 //!   slip    −∂f/∂s⁺ = K (s_max/|s⁺|)(1 − ŝŝᵀ)                 turning only: along ŝ the force is at its bound
 //!   where the damper overshoots the bound, f̂ takes ŝ's place and μ fₙ/|f_trial| multiplies.
 //!
-//! On an ellipse the normal of the ellipse takes ŝ's place. The dependence on fₙ is left out here: it is not symmetric,
+//! On an ellipse with return to the nearest point the normal of the ellipse takes ŝ's place. The dependence on fₙ is left out here: it is not symmetric,
 //! and a solver that re-solves sees it in the next pass.
 
 use crate::ellipse::Ellipse;
 use crate::levels::Levels;
-use crate::trial::{Brush, BrushRate, FrictionError, Slope, Trial, check_not_negative, check_positive};
+use crate::trial::{Brush, BrushRate, FrictionError, Return, Slope, Trial, check_not_negative, check_positive};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -27,8 +27,12 @@ pub struct Bristle {
     pub stribeck_speed: f64,
     /// Time constant with which the static level returns at rest, s; neutral: 0.
     pub dwell_time: f64,
+    /// Time constant with which rest is lost in sliding, s, where there is a dwell time and a Stribeck speed; zero: at once.
+    pub fall_time: f64,
     /// Level across the grain over that along it; neutral: 1.
     pub across: f64,
+    /// How a deflection beyond the ellipse of the levels comes back; no matter where `across` is 1.
+    pub way: Return,
     /// Stiffness of one point's bristle, N/m.
     pub stiffness: f64,
     /// Damping of the bristle, N·s/m; neutral: 0.
@@ -44,7 +48,9 @@ impl Default for Bristle {
             mu_kinetic: 0.0,
             stribeck_speed: 1e-3,
             dwell_time: 0.0,
+            fall_time: 0.0,
             across: 1.0,
+            way: Return::Nearest,
             stiffness: 1e5,
             damping: 0.0,
             viscous: 0.0,
@@ -60,6 +66,7 @@ impl Bristle {
             ("mu_kinetic", self.mu_kinetic),
             ("stribeck_speed", self.stribeck_speed),
             ("dwell_time", self.dwell_time),
+            ("fall_time", self.fall_time),
             ("across", self.across),
             ("damping", self.damping),
             ("viscous", self.viscous),
@@ -75,6 +82,7 @@ impl Bristle {
             kinetic: self.mu_kinetic,
             stribeck_speed: self.stribeck_speed,
             dwell_time: self.dwell_time,
+            fall_time: self.fall_time,
         }
     }
 
@@ -90,9 +98,9 @@ impl Bristle {
     }
 
     #[inline]
-    fn ellipse(&self, level: f64, normal_force: f64, grain: &Vector3<f64>) -> Ellipse {
+    pub(crate) fn ellipse(&self, level: f64, normal_force: f64, grain: &Vector3<f64>) -> Ellipse {
         let along = level * normal_force / self.stiffness;
-        Ellipse { along, across: along * self.across, grain: *grain }
+        Ellipse { along, across: along * self.across, grain: *grain, way: self.way }
     }
 
     /// The law: force, new deflection and rest, and derivatives.
@@ -105,17 +113,17 @@ impl Bristle {
         let speed = if levels.is_constant() { 0.0 } else { trial.slip.norm() };
         let mut rest = levels.calc_rest(trial.rest, speed, trial.elapsed);
         let mut bound = self.ellipse(levels.at(rest), trial.normal_force, &trial.grain);
-        let mut held = bound.nearest(&trial.s_trial);
+        let mut held = bound.hold(&trial.s_trial);
         if !levels.is_constant() {
             rest = levels.settle(rest, held.inside, trial.elapsed);
             if !held.inside && levels.stribeck_speed == 0.0 {
                 bound = self.ellipse(levels.kinetic, trial.normal_force, &trial.grain);
-                held = bound.nearest(&trial.s_trial);
+                held = bound.hold(&trial.s_trial);
             }
         }
         // The damper sees what was left within the bound of now: the length that a falling bound takes away slips at the
         // tip. Counted as a rate of the bristle, it would push along the slip and give energy.
-        let before = if trial.s == Vector3::zeros() { trial.s } else { bound.nearest(&trial.s).s };
+        let before = if trial.s == Vector3::zeros() { trial.s } else { bound.hold(&trial.s).s };
         let rate = self.damping / trial.elapsed;
         let mut force = -(self.stiffness * held.s + rate * (held.s - before));
         let mut slope = Slope { across: (self.stiffness + rate) * held.shrink, along: 0.0, direction: held.normal };
@@ -127,6 +135,11 @@ impl Bristle {
             if !allowed.inside {
                 slope = Slope { across: slope.across * allowed.shrink, along: 0.0, direction: allowed.normal };
                 force = allowed.s;
+            }
+            if self.way == Return::Radial {
+                let moved = trial.s_trial - trial.s;
+                let stored = self.calc_stored_energy(&held.s) - self.calc_stored_energy(&trial.s);
+                force = self.without_push(force, &held.s, &moved, stored);
             }
         }
         let by_slip = self.calc_slip_slope(trial, speed, held.inside);
@@ -140,6 +153,12 @@ impl Bristle {
         }
     }
 
+    /// The force, or that of the spring alone where the damper would give energy: shortened along itself, a deflection may
+    /// run against the motion that shortens it (only far from a circle).
+    fn without_push(&self, force: Vector3<f64>, s: &Vector3<f64>, moved: &Vector3<f64>, stored: f64) -> Vector3<f64> {
+        if -force.dot(moved) < stored { -self.stiffness * s } else { force }
+    }
+
     /// −∂f/∂u: the viscous term, and in sliding the level that follows the speed.
     #[inline]
     fn calc_slip_slope(&self, trial: &Trial, speed: f64, sticks: bool) -> Slope {
@@ -151,7 +170,8 @@ impl Bristle {
         Slope { across: self.viscous, along: self.viscous + fall, direction }
     }
 
-    /// The law in continuous time; `trial.s_trial` and `trial.elapsed` do not matter, rest stays what it was.
+    /// The law in continuous time; `trial.s_trial` and `trial.elapsed` do not matter, rest stays what it was: [`Self::flow`]
+    /// moves both.
     pub fn eval_rate(&self, trial: &Trial) -> BrushRate {
         if trial.normal_force <= 0.0 {
             return BrushRate::none();
@@ -161,14 +181,17 @@ impl Bristle {
         let lags = levels.dwell_time > 0.0;
         let rest = if lags { trial.rest } else { levels.calc_rest(trial.rest, speed, 0.0) };
         let bound = self.ellipse(levels.at(rest), trial.normal_force, &trial.grain);
-        let s = bound.nearest(&trial.s).s;
-        let edge = bound.scaled(ON_BOUND).nearest(&s);
+        let s = bound.hold(&trial.s).s;
+        let edge = bound.scaled(ON_BOUND).hold(&s);
         let outward = edge.normal.dot(&trial.slip);
         let slides = !edge.inside && outward > 0.0;
         let s_rate = if slides { trial.slip - edge.normal * outward } else { trial.slip };
         let mut force = -(self.stiffness * s + self.damping * s_rate);
         if self.damping > 0.0 {
             force = bound.scaled(self.stiffness).nearest(&force).s;
+            if self.way == Return::Radial {
+                force = self.without_push(force, &s, &trial.slip, self.stiffness * s.dot(&s_rate));
+            }
         }
         BrushRate { force: force - self.viscous * trial.slip, s, s_rate, sticks: !slides }
     }
@@ -186,7 +209,9 @@ mod tests {
         mu_kinetic: 0.3,
         stribeck_speed: 0.01,
         dwell_time: 0.0,
+        fall_time: 0.0,
         across: 1.0,
+        way: Return::Nearest,
         stiffness: 1e4,
         damping: 5.0,
         viscous: 2.0,

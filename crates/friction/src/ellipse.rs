@@ -9,7 +9,11 @@
 //!   Σ (a_i s⁺_i / (a_i² + λ))² = 1,
 //!
 //! a falling, convex function of λ: Newton's method from the left climbs to it without a turn.
+//!
+//! The radial return shortens the deflection along itself instead, s = s⁺/√((s⁺₁/a₁)² + (s⁺₂/a₂)²): in steady sliding the
+//! force then opposes the velocity, at the level of that direction. Which of the two holds is [`crate::Return`].
 
+use crate::trial::Return;
 use nalgebra::Vector3;
 
 /// Semi-axes along and across the grain, m.
@@ -19,6 +23,8 @@ pub(crate) struct Ellipse {
     pub across: f64,
     /// Unit vector; zero for a disc of radius `along`.
     pub grain: Vector3<f64>,
+    /// How a deflection beyond it comes back.
+    pub way: Return,
 }
 
 /// The nearest point of the set, and the derivative of that map: `shrink (1 − d dᵀ)` within the plane.
@@ -37,7 +43,32 @@ impl Ellipse {
     /// The set, `k` times as large.
     #[inline]
     pub fn scaled(&self, k: f64) -> Self {
-        Self { along: self.along * k, across: self.across * k, grain: self.grain }
+        Self { along: self.along * k, across: self.across * k, ..*self }
+    }
+
+    /// What the set holds of a deflection, by its way of return.
+    #[inline]
+    pub fn hold(&self, s: &Vector3<f64>) -> Nearest {
+        match self.way {
+            Return::Nearest => self.nearest(s),
+            Return::Radial => self.shortened(s),
+        }
+    }
+
+    /// A deflection beyond the set shortened along itself. Of the derivative only the symmetric part, which turns, is told.
+    fn shortened(&self, s: &Vector3<f64>) -> Nearest {
+        if self.along == self.across || self.grain == Vector3::zeros() {
+            return self.nearest_on_disc(s);
+        }
+        let s_along = s.dot(&self.grain);
+        let s_across = (s - self.grain * s_along).norm();
+        let share = |x: f64, axis: f64| if x == 0.0 { 0.0 } else { x / axis };
+        let size = share(s_along, self.along).hypot(share(s_across, self.across));
+        if size <= 1.0 {
+            return Nearest { s: *s, inside: true, shrink: 1.0, normal: Vector3::zeros() };
+        }
+        let normal = s.try_normalize(0.0).unwrap_or_default();
+        Nearest { s: s / size, inside: false, shrink: 1.0 / size, normal }
     }
 
     #[inline]
@@ -105,7 +136,7 @@ mod tests {
 
     #[test]
     fn the_nearest_point_is_on_the_ellipse_and_the_way_to_it_is_normal() {
-        let ellipse = Ellipse { along: 2.0, across: 0.5, grain: Vector3::x() };
+        let ellipse = Ellipse { along: 2.0, across: 0.5, grain: Vector3::x(), way: Return::Nearest };
         for k in 0..200 {
             let angle = f64::from(k) * 0.0314;
             let s = Vector3::new(angle.cos(), angle.sin(), 0.0) * (2.1 + 0.1 * f64::from(k));
@@ -119,7 +150,7 @@ mod tests {
 
     #[test]
     fn its_derivative_is_that_of_the_nearest_point() {
-        let ellipse = Ellipse { along: 2.0, across: 0.5, grain: Vector3::new(0.6, 0.8, 0.0) };
+        let ellipse = Ellipse { along: 2.0, across: 0.5, grain: Vector3::new(0.6, 0.8, 0.0), way: Return::Nearest };
         let s = Vector3::new(1.7, 1.9, 0.0);
         let near = ellipse.nearest(&s);
         for k in 0..2 {
@@ -135,9 +166,26 @@ mod tests {
     #[test]
     fn equal_axes_are_the_radial_return() {
         let s = Vector3::new(3.0, -4.0, 0.0);
-        let disc = Ellipse { along: 1.0, across: 1.0, grain: Vector3::x() }.nearest(&s);
-        let nearly = Ellipse { along: 1.0, across: 1.0 + 1e-13, grain: Vector3::x() }.nearest(&s);
+        let round = Ellipse { along: 1.0, across: 1.0, grain: Vector3::x(), way: Return::Nearest };
+        let disc = round.nearest(&s);
+        let nearly = Ellipse { across: 1.0 + 1e-13, ..round }.nearest(&s);
         assert!((disc.s - s / 5.0).norm() < 1e-15);
         assert!((nearly.s - disc.s).norm() < 1e-12);
+    }
+
+    #[test]
+    fn shortened_along_itself_a_deflection_keeps_its_direction_and_ends_on_the_ellipse() {
+        let ellipse = Ellipse { along: 2.0, across: 0.5, grain: Vector3::x(), way: Return::Radial };
+        for k in 0..200 {
+            let angle = f64::from(k) * 0.0314;
+            let s = Vector3::new(angle.cos(), angle.sin(), 0.0) * (2.1 + 0.1 * f64::from(k));
+            let held = ellipse.hold(&s);
+            // Round-off of a quotient.
+            assert!(held.s.cross(&s).norm() < 1e-14 * s.norm_squared() && held.s.dot(&s) > 0.0);
+            assert!(((held.s.x / 2.0).hypot(held.s.y / 0.5) - 1.0).abs() < 1e-14);
+        }
+        let flat = Ellipse { across: 0.0, ..ellipse };
+        assert_eq!(flat.hold(&Vector3::y()).s, Vector3::zeros(), "nothing is held across a grain without friction");
+        assert_eq!(flat.hold(&Vector3::x()).s, Vector3::x());
     }
 }

@@ -5,13 +5,13 @@
 //! | `stribeck_speed` v_s | `dwell_time` T | rest |
 //! | --- | --- | --- |
 //! | > 0 | 0 | w = exp(−(u/v_s)²): the level falls smoothly with the slip speed u (Stribeck) |
-//! | > 0 | > 0 | ẇ = (exp(−(u/v_s)²) − w)/T where that rises; it falls at once |
+//! | > 0 | > 0 | ẇ = (exp(−(u/v_s)²) − w)/T where that rises; it falls with `fall_time` in place of T, or at once where that is 0 |
 //! | 0 | 0 | w = 1 while the point sticks, 0 while it slides: the level drops where the bristle breaks away |
 //! | 0 | > 0 | ẇ = (1 − w)/T while it sticks, 0 while it slides |
 //!
 //! The dwell time makes the breakaway force grow with the time at rest, and fall with the rate of loading (after Gonthier,
 //! McPhee, Lange and Piedbœuf 2004, whose contact model lags the Stribeck exponential by a slow time constant where it
-//! rises and a short one where it falls; the short one is zero here). A new contact starts rested where T = 0, else with w = 0.
+//! rises and a short one where it falls). A new contact starts rested where T = 0, else with w = 0.
 
 /// How the level moves between static and kinetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +24,8 @@ pub struct Levels {
     pub stribeck_speed: f64,
     /// Time constant with which rest returns, s; zero: at once.
     pub dwell_time: f64,
+    /// Time constant with which it is lost in sliding, s; zero: at once.
+    pub fall_time: f64,
 }
 
 impl Levels {
@@ -55,10 +57,14 @@ impl Levels {
     /// Rest after `elapsed` s in which it tends to `target`.
     #[inline]
     fn follow(&self, rest: f64, target: f64, elapsed: f64) -> f64 {
-        if self.dwell_time == 0.0 || target <= rest {
-            return target;
-        }
-        rest - (target - rest) * (-elapsed / self.dwell_time).exp_m1()
+        let time = self.time_towards(target, rest);
+        if time == 0.0 { target } else { rest - (target - rest) * (-elapsed / time).exp_m1() }
+    }
+
+    /// Time constant with which rest goes to `target`, s.
+    #[inline]
+    fn time_towards(&self, target: f64, rest: f64) -> f64 {
+        if target > rest || self.dwell_time == 0.0 { self.dwell_time } else { self.fall_time }
     }
 
     /// Rest at a slip speed (m/s) after `elapsed` s; with a drop, the rest to which the trial is held.

@@ -71,6 +71,7 @@ impl LuGre {
             kinetic: self.mu_kinetic,
             stribeck_speed: self.stribeck_speed,
             dwell_time: 0.0,
+            fall_time: 0.0,
         }
     }
 

@@ -8,6 +8,7 @@ pub mod effects;
 mod error;
 mod glob;
 mod load;
+pub mod measure;
 pub mod outcome;
 mod overrides;
 mod schema;
@@ -16,7 +17,7 @@ mod spelling;
 mod starter;
 pub mod strategy;
 
-pub use build::{Mission, build, docking_visuals, shape_of_geometry};
+pub use build::{DriveChannel, Mission, build, docking_visuals, shape_of_geometry};
 pub use document::Source;
 pub use error::{Place, Problem, ScenarioError, ScenarioErrors};
 pub use glob::{glob_matches, is_glob};

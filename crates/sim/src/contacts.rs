@@ -14,6 +14,7 @@
 //! and G = −h ∂f/∂u', symmetric and positive semidefinite, is what the solver adds to the mass matrix. The dependence of
 //! friction on the normal force is left to the next pass.
 
+use crate::dead_weight;
 use crate::model::{Model, PairLaw};
 use crate::state::{ContactMemory, State};
 use crate::workspace::Workspace;
@@ -73,6 +74,8 @@ pub(crate) struct Outcome {
     pub law: Vec3,
     /// Normal part of it, N.
     pub normal_force: f64,
+    /// Whether the surfaces press on each other, adhesion or not.
+    pub bears: bool,
     /// Normal force that bounds the friction, now and one pass earlier, N (see [`Touch::calc_pressing`]).
     pub pressing: [f64; 2],
     /// Passes of this step so far.
@@ -106,11 +109,13 @@ impl Touch {
         let (n, at) = (self.normal, self.place);
         let rate = (1.0 - at.theta) * self.u + at.theta * u_new;
         let (u_n, rate_n) = (n.dot(u_new), n.dot(&rate));
-        let normal = law.normal.eval(at.gap_base + at.beta * u_n, rate_n);
+        let gap = at.gap_base + at.beta * u_n;
+        let (normal, adhesion) = (law.normal.eval(gap, rate_n), law.normal.adhesion_at(gap));
         let nn = n * n.transpose();
         let mut out = Outcome {
             law: normal.force * n,
             normal_force: normal.force,
+            bears: normal.force + adhesion > 0.0,
             pressing: [self.calc_pressing(normal.force), self.out.pressing[0]],
             passes: self.out.passes + 1,
             g: -h * (at.beta * normal.d_gap + at.theta * normal.d_rate) * nn,
@@ -124,7 +129,7 @@ impl Touch {
                 s_trial,
                 slip,
                 elapsed: at.elapsed,
-                normal_force: out.pressing[0] + law.normal.adhesion,
+                normal_force: out.pressing[0] + adhesion,
                 rest: self.rest,
                 grain: self.grain,
             });
@@ -220,8 +225,11 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
     if model.scene.pairs().is_empty() {
         return;
     }
-    update_reach(model, ws, h);
-    ws.detector.detect(&model.scene, &ws.frames, &ws.reach, &mut ws.points);
+    if model.dead_weights.len() < model.scene.pairs().len() {
+        update_reach(model, ws, h);
+        ws.detector.detect(&model.scene, &ws.frames, &ws.reach, &mut ws.points);
+    }
+    dead_weight::add_points(model, ws);
     for i in 0..ws.points.len() {
         let contact = ws.points[i];
         let (body_a, body_b) = model.pair_bodies(contact.pair as usize);
@@ -369,7 +377,7 @@ impl Touch {
 pub(crate) fn commit_bristles(model: &Model, state: &mut State, ws: &mut Workspace) {
     ws.memories.clear();
     for touch in &ws.touches {
-        if !model.laws[touch.pair as usize].remembers() || touch.out.normal_force <= 0.0 {
+        if !model.laws[touch.pair as usize].remembers() || !touch.out.bears {
             continue;
         }
         let (b0, b1) = (&ws.frames_start[touch.body_b], &ws.frames[touch.body_b]);

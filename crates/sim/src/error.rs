@@ -34,6 +34,20 @@ pub enum ModelError {
         /// What is wrong with it.
         fault: String,
     },
+    /// A dead weight that nothing holds, or that lies on nothing flat.
+    #[error(
+        "contact \"{0}\": a dead weight is a guided body on a half-space that does not turn; give the body's vehicle a base \
+         without the direction across the plane, {{ free = [\"x\", \"y\"] }}, and the plane a shape of kind half-space"
+    )]
+    DeadWeight(String),
+    /// A drive that cannot be.
+    #[error("drive \"{name}\" {fault}")]
+    Drive {
+        /// Its name.
+        name: String,
+        /// What is wrong with it.
+        fault: String,
+    },
     /// An effect that cannot be.
     #[error("effect \"{name}\": {fault}")]
     Effect {

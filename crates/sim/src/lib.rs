@@ -27,6 +27,8 @@
 mod account;
 mod actuator;
 mod contacts;
+mod dead_weight;
+mod drive;
 mod effect;
 mod environment;
 mod error;
@@ -34,6 +36,7 @@ mod mechanism;
 mod model;
 mod pivots;
 mod rk4;
+mod rk4_bristle;
 mod run;
 mod solve;
 mod state;
@@ -44,7 +47,11 @@ mod world;
 
 pub use account::{Energy, MomentumAudit};
 pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
-pub use effect::{DryLevel, Effect, EffectKind, JointEffect, JointLaw, LineEffect, LineLaw, Series};
+pub use drive::{Drive, DriveAxis, DrivePath, Motion};
+pub use effect::{
+    Appendage, Axes, BodyAction, BodyEffect, BodyLaw, BodyMotion, BodyPlace, DryLevel, Effect, EffectKind, JointEffect,
+    JointLaw, LineEffect, LineLaw, Load, MemorySlot, Series, Slosh, Sphere, memory_layout,
+};
 pub use environment::Environment;
 pub use error::{ModelError, StepError};
 pub use mechanism::{

@@ -22,14 +22,21 @@ pub enum Base {
     Fixed,
     /// Only the marked components of its twist, W axes: angular x, y, z, then linear x, y, z.
     Only([bool; 6]),
+    /// Moves as this one of [`Model::drives`] says, whatever the forces; see [`Model::with_drives`].
+    Driven(usize),
 }
 
 impl Base {
+    /// Whether no force moves it.
+    pub fn is_held(&self) -> bool {
+        matches!(self, Self::Fixed | Self::Driven(_))
+    }
+
     /// The free components: angular x, y, z, then linear x, y, z.
     pub fn mask(&self) -> [bool; 6] {
         match self {
             Self::Free => [true; 6],
-            Self::Fixed => [false; 6],
+            Self::Fixed | Self::Driven(_) => [false; 6],
             Self::Only(mask) => *mask,
         }
     }
@@ -201,10 +208,14 @@ pub struct Model {
     pub step: f64,
     /// What joins bodies beside joints and contact.
     pub mechanisms: Vec<Mechanism>,
+    /// Bases that follow a path.
+    pub drives: Vec<crate::drive::Drive>,
     /// Physics beyond all that.
     pub(crate) effects: Effects,
     /// Global bodies and the frames in them, of the two sides of each mechanism.
     pub(crate) mechanism_sides: Vec<[(usize, Frame); 2]>,
+    /// Pairs whose guide presses them together with a weight; nothing is detected for them.
+    pub(crate) dead_weights: Vec<crate::dead_weight::DeadWeight>,
     /// Bounding radius of each body's colliders about its origin, m; negative where it has none.
     pub(crate) collider_radius: Vec<f64>,
     pub(crate) one_sided_force: Vec3,
@@ -238,13 +249,16 @@ impl Model {
             integrator: spec.integrator,
             step: spec.step,
             mechanisms: spec.mechanisms,
+            drives: Vec::new(),
             effects: Effects::default(),
             mechanism_sides,
+            dead_weights: Vec::new(),
             collider_radius,
             one_sided_force: spec.one_sided_force,
         };
         model.attach_drives()?;
         model.effects = Effects::build(spec.effects, &mut model)?;
+        crate::dead_weight::attach(&mut model)?;
         Ok(model)
     }
 

@@ -3,20 +3,22 @@
 //!   y = (base position, rotation vector from the step's start, joint displacement, v, p, L, s, effects' memory)
 //!
 //! Every stage takes the base twist from its momentum, so every stage conserves, and so does the sum. Rotation vectors
-//! follow θ̇ = ω − ½ θ×ω + 1/12 θ×(θ×ω). Bristles are integrated in the plane of the step's start; points that touch down within a step get
-//! theirs at its end. Sliding bristles turn at |u|/s_max, which wants h < 2 s_max/|u|.
+//! follow θ̇ = ω − ½ θ×ω + 1/12 θ×(θ×ω). Deflections are kept in the plane of the step's start. Those of the comparison laws
+//! have rates; what becomes of a bristle's is the business of [`crate::rk4_bristle`].
 
 use crate::actuator::CoordinatePoint;
 use crate::contacts::{Touch, Turned, find_memory, find_touches};
+use crate::drive;
 use crate::effect::{self, Acting};
 use crate::mechanism;
 use crate::model::Model;
 use crate::pivots;
+use crate::rk4_bristle::{self, Stage, Track};
 use crate::solve;
 use crate::state::{Account, ContactMemory, State};
 use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
 use crate::workspace::Workspace;
-use friction::{Friction, Trial, carry};
+use friction::{BrushRate, Trial, carry};
 use spatial::{Mat3, Twist, Vec3, Wrench, log_rotation, rotation_rate_of_vector};
 
 /// Scratch of the stages.
@@ -26,6 +28,8 @@ pub(crate) struct Stages {
     rate: Rates,
     sum: Rates,
     slots: Vec<ContactMemory>,
+    tracks: Vec<Track>,
+    node: usize,
 }
 
 /// A rate of everything that is integrated.
@@ -101,13 +105,18 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
         if index == 0 {
             open_slots(model, ws, &mut rk.slots);
             rk.sum.reset(model, rk.slots.len());
+            rk.tracks.clear();
+            rk.tracks.resize(rk.slots.len(), Track::default());
         }
+        rk.node = index;
         calc_rates(model, state, ws, &mut rk);
         rk.sum.add_scaled(&rk.rate, weight);
     }
     let from = From { start: &rk.start, rate: &rk.sum, slots: &rk.slots };
     place(model, state, &mut ws.displacement, &from, h);
+    drive::place(model, state, ws.end);
     state.account.add_scaled(&rk.sum.account, h);
+    rk4_bristle::place_at_the_end(model, &rk.tracks, &mut state.bristles);
     ws.rk = rk;
     ws.update_positions(model, state);
     finish(model, state, ws);
@@ -124,7 +133,7 @@ fn open_slots(model: &Model, ws: &Workspace, slots: &mut Vec<ContactMemory>) {
         if !law.remembers() {
             continue;
         }
-        let compression = law.normal.eval(touch.gap, touch.normal.dot(&touch.u)).force + law.normal.adhesion;
+        let compression = law.normal.calc_compression(touch.gap, touch.normal.dot(&touch.u));
         let s_w = law.friction.map_or(Vec3::zeros(), |f| f.eval_rate(&trial_of(touch, compression)).s);
         let Touch { pair, feature, normal: normal_w, turn: turn_w, rest, local_b: point_b, .. } = *touch;
         slots.push(ContactMemory { pair, feature, s_w, normal_w, turn_w, rest, point_b });
@@ -136,8 +145,7 @@ fn trial_of(touch: &Touch, normal_force: f64) -> Trial {
     Trial { s: touch.s, slip, normal_force, rest: touch.rest, grain: touch.grain, ..Trial::default() }
 }
 
-/// Bristles were integrated in the plane and the axes of the step's start: they turn with the bodies to its end, and rest
-/// follows what the last stage found.
+/// Bristles were integrated in the plane and the axes of the step's start: they turn with the bodies to its end.
 fn carry_to_the_end(model: &Model, state: &mut State, ws: &Workspace) {
     let turned = Turned { from: &ws.frames_start, to: &ws.frames };
     for memory in &mut state.bristles {
@@ -148,11 +156,6 @@ fn carry_to_the_end(model: &Model, state: &mut State, ws: &Workspace) {
         let touch = ws.touches.iter().find(|t| (t.pair, t.feature) == (memory.pair, memory.feature));
         if let Some(touch) = touch {
             memory.turn_w = carry(&touch.turn, &touch.normal, &normal);
-        }
-        if let (Some(touch), Some(Friction::Bristle(law))) = (touch, &model.laws[memory.pair as usize].friction) {
-            let speed = (touch.u - touch.normal * touch.normal.dot(&touch.u)).norm();
-            let rest = law.levels().calc_rest(memory.rest, speed, ws.step);
-            memory.rest = law.levels().settle(rest, touch.out.sticks, ws.step);
         }
     }
 }
@@ -179,6 +182,7 @@ fn place(model: &Model, state: &mut State, displacement: &mut [f64], from: &From
         vehicle.tree.retract(&mut state.q[vehicle.q_range()], xi);
     }
     state.v.iter_mut().zip(&rate.v).for_each(|(v, r)| *v += r * k);
+    drive::place(model, state, state.time);
     state.effects.iter_mut().zip(&rate.effects).for_each(|(x, r)| *x += r * k);
     state.bristles.clear();
     let moved = slots.iter().zip(&rate.s).map(|(slot, r)| ContactMemory { s_w: slot.s_w + r * k, ..*slot });
@@ -194,16 +198,22 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     pivots::eval_explicit(model, ws, state.time - rk.start.time);
     eval_coordinates(model, state, ws, rk);
     calc_external(model, state, ws);
-    calc_bias(model, state, ws, false);
-    if solve::factor(model, ws, 1.0) {
-        solve::solve(model, ws, 1.0);
-    } else {
-        ws.v_gain.fill(f64::NAN);
+    for drive in &model.drives {
+        ws.base_acceleration[drive.vehicle] = drive.calc_motion(state.time).acceleration;
     }
-    rk.rate.v.copy_from_slice(&ws.v_gain);
+    // Bases move by their momentum; accelerations are those of joints alone.
+    if model.nv() > 0 {
+        calc_bias(model, state, ws, false);
+        if solve::factor(model, ws, 1.0) {
+            solve::solve(model, ws, 1.0);
+        } else {
+            ws.v_gain.fill(f64::NAN);
+        }
+        rk.rate.v.copy_from_slice(&ws.v_gain);
+        state.work.solves += 1;
+    }
     effect::write_rates(model, state, ws, &mut rk.rate.effects);
     state.work.rate_evaluations += 1;
-    state.work.solves += 1;
     ws.v_gain.fill(0.0);
     ws.dvel.fill(Twist::default());
     let account = state.account;
@@ -213,6 +223,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     add_impulses(model, state, ws, 1.0);
     std::mem::swap(&mut rk.rate.momentum, &mut state.momentum);
     (rk.rate.account, state.account) = (state.account, account);
+    drive::add_rates(model, state, ws, (&rk.rate.momentum, &mut rk.rate.account), &rk.rate.v);
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let (q, v) = (vehicle.q_range(), vehicle.v_range());
         let turned = log_rotation(&(state.bases[i].rotation * rk.start.bases[i].rotation.inverse()));
@@ -225,24 +236,47 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
 }
 
 fn eval_contacts(model: &Model, ws: &mut Workspace, rk: &mut Stages) {
+    let Workspace { touches, frames, frames_start, step, .. } = ws;
     // Back from the present frames to those of the step's start.
-    let back = Turned { from: &ws.frames, to: &ws.frames_start };
-    for touch in &mut ws.touches {
-        let (law, n) = (model.laws[touch.pair as usize].weighted(touch.weight), touch.normal);
-        let normal = law.normal.eval(touch.gap, n.dot(&touch.u));
-        touch.out.law = normal.force * n;
-        touch.out.normal_force = normal.force + law.normal.adhesion;
-        touch.out.g = Mat3::zeros();
-        if let Some(friction) = &law.friction {
-            let brush = friction.eval_rate(&trial_of(touch, touch.out.normal_force));
-            touch.out.law += brush.force;
-            (touch.out.s, touch.out.sticks) = (brush.s, brush.sticks);
-            if let Some(slot) = find_memory(&rk.slots, touch.pair, touch.feature) {
-                let bodies = (touch.body_a, touch.body_b);
-                rk.rate.s[slot] = back.deflection(bodies, &brush.s_rate, &n, &rk.slots[slot].normal_w);
-            }
+    let turns = (&Turned { from: frames_start, to: frames }, &Turned { from: frames, to: frames_start });
+    for touch in touches {
+        let slot = find_memory(&rk.slots, touch.pair, touch.feature);
+        if let Some(slot) = slot {
+            let at = Stage { node: rk.node, step: *step, slot: &rk.slots[slot], there: turns.0, back: turns.1 };
+            rk4_bristle::bring(model, touch, &at, &mut rk.tracks[slot]);
         }
-        (touch.out.line, touch.out.force) = (touch.out.law, touch.out.law);
+        let brush = eval_touch(model, touch);
+        if let (Some(brush), Some(slot)) = (brush, slot)
+            && !rk4_bristle::is_tracked(model, touch.pair)
+        {
+            let (bodies, normal) = ((touch.body_a, touch.body_b), &rk.slots[slot].normal_w);
+            rk.rate.s[slot] = turns.1.deflection(bodies, &brush.s_rate, &touch.normal, normal);
+        }
+    }
+}
+
+/// Force of a touch by its laws as they are, and what friction says of its memory.
+fn eval_touch(model: &Model, touch: &mut Touch) -> Option<BrushRate> {
+    let (law, n) = (model.laws[touch.pair as usize].weighted(touch.weight), touch.normal);
+    let normal = law.normal.eval(touch.gap, n.dot(&touch.u));
+    touch.out.law = normal.force * n;
+    touch.out.normal_force = normal.force + law.normal.adhesion_at(touch.gap);
+    touch.out.g = Mat3::zeros();
+    let brush = law.friction.as_ref().map(|f| f.eval_rate(&trial_of(touch, touch.out.normal_force)));
+    if let Some(brush) = &brush {
+        touch.out.law += brush.force;
+        (touch.out.s, touch.out.sticks) = (brush.s, brush.sticks);
+    }
+    (touch.out.line, touch.out.force) = (touch.out.law, touch.out.law);
+    brush
+}
+
+/// Finds the touching points of the present state and evaluates their laws there; nothing advances.
+pub(crate) fn refresh_touches(model: &Model, state: &State, ws: &mut Workspace) {
+    ws.frames_start.copy_from_slice(&ws.frames);
+    find_touches(model, state, ws, ws.step);
+    for touch in &mut ws.touches {
+        eval_touch(model, touch);
     }
 }
 

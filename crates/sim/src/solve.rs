@@ -112,6 +112,9 @@ pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
 
 fn add_vehicle(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
     let vehicle = &model.vehicles[i];
+    if vehicle.base.is_held() && vehicle.tree.nv == 0 {
+        return;
+    }
     let n = 6 + vehicle.tree.nv;
     let extra = &ws.extra[vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len()];
     let islands = &mut ws.islands;
@@ -201,10 +204,11 @@ fn for_path(tree: &Tree, kin: &Kinematics, body: usize, mut visit: impl FnMut(us
 pub(crate) fn solve(model: &Model, ws: &mut Workspace, h: f64) {
     ws.contact.fill(Wrench::default());
     for touch in &ws.touches {
+        let line = if model.drives.is_empty() { touch.out.line } else { line_beside_drives(model, ws, touch, h) };
         for (body, sign) in [(touch.body_a, -1.0), (touch.body_b, 1.0)] {
             if let Some(&(vehicle, _)) = model.owners.get(body) {
                 let r = touch.point - ws.kin[vehicle].anchor;
-                ws.contact[body] += Wrench::from_force_at(sign * touch.out.line, &r);
+                ws.contact[body] += Wrench::from_force_at(sign * line, &r);
             }
         }
     }
@@ -220,6 +224,15 @@ pub(crate) fn solve(model: &Model, ws: &mut Workspace, h: f64) {
     for i in 0..model.vehicles.len() {
         read_gains(model, ws, i);
     }
+}
+
+/// The line at zero gain of all that forces move: what a driven base gains is known.
+fn line_beside_drives(model: &Model, ws: &Workspace, touch: &Touch, h: f64) -> Vec3 {
+    let at = |body: usize| {
+        let Some(&(vehicle, _)) = model.owners.get(body) else { return Vec3::zeros() };
+        ws.drive_gain[vehicle].at(&(touch.point - ws.kin[vehicle].anchor))
+    };
+    touch.out.line - touch.out.g * (at(touch.body_b) - at(touch.body_a)) / h
 }
 
 fn write_rhs(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
@@ -245,7 +258,10 @@ fn read_gains(model: &Model, ws: &mut Workspace, i: usize) {
     let islands = &ws.islands;
     let rhs = &islands.rhs[islands.group[i]];
     let gain = |k: usize| if islands.rows[i][k] == HELD { 0.0 } else { rhs[islands.rows[i][k]] };
-    let base = Twist::new(Vec3::new(gain(0), gain(1), gain(2)), Vec3::new(gain(3), gain(4), gain(5)));
+    let mut base = Twist::new(Vec3::new(gain(0), gain(1), gain(2)), Vec3::new(gain(3), gain(4), gain(5)));
+    if vehicle.base.is_held() {
+        base = ws.drive_gain[i];
+    }
     for k in 0..vehicle.tree.nv {
         ws.v_gain[vehicle.v0 + k] = gain(6 + k);
     }

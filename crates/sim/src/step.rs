@@ -12,6 +12,7 @@
 
 use crate::actuator::{ActuatorKind, CoordinatePoint, calc_thrust};
 use crate::contacts::{Outcome, Place, Touch, commit_bristles, find_touches};
+use crate::drive;
 use crate::effect::{self, Acting};
 use crate::mechanism;
 use crate::model::{Base, Model};
@@ -44,7 +45,9 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     let h = ws.step;
     ws.since = None;
     begin(model, state, ws);
+    drive::begin(model, state, ws, h);
     if scheme == Scheme::ImplicitMidpoint {
+        effect::drift_to_midpoint(model, state, ws, 0.5 * h);
         drift_to_midpoint(model, state, ws, 0.5 * h);
         state.time += 0.5 * h;
     }
@@ -61,9 +64,11 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
         Scheme::ImplicitMidpoint => drift_from_midpoint(model, state, ws, 0.5 * h),
         _ => drift(model, state, ws, h),
     }
+    drive::place(model, state, ws.end);
     ws.update_positions(model, state);
     place_centres(model, state, ws, scheme);
     finish(model, state, ws);
+    drive::add_step(model, state, ws);
     pivots::commit(ws);
     commit_bristles(model, state, ws);
     mechanism::commit(model, state, ws);
@@ -74,11 +79,11 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
 /// The drift of the base origin is off by O(h²), and L − x × p turns that into spin: a body flying at 1 m/s and turning at
 /// 1 rad/s would be pushed aside by ½ mm/s, and its rotation would depend on the frame that one looks from.
 fn place_centres(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
-    for (i, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| v.base != Base::Fixed) {
+    for (i, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| !v.base.is_held()) {
         let start = &ws.momentum_start[i];
         let mean = match scheme {
-            Scheme::ImplicitMidpoint => 0.5 * (start + state.momentum[i].force),
-            _ => state.momentum[i].force,
+            Scheme::ImplicitMidpoint => 0.5 * (start + own_momentum(model, state, ws, i)),
+            _ => own_momentum(model, state, ws, i),
         };
         let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
         let kin = &mut ws.kin[i];
@@ -93,6 +98,12 @@ fn place_centres(model: &Model, state: &mut State, ws: &mut Workspace, scheme: S
     }
 }
 
+/// Linear momentum of a vehicle's bodies, without the parts that effects put inside them.
+fn own_momentum(model: &Model, state: &State, ws: &Workspace, vehicle: usize) -> Vec3 {
+    let total = state.momentum[vehicle].force;
+    if ws.parts.has_parts { total - effect::calc_carried_linear(model, state, vehicle) } else { total }
+}
+
 /// Mass of a vehicle and its first moment about the anchor.
 fn calc_first_moment(kin: &Kinematics) -> (f64, Vec3) {
     kin.inertia.iter().fold((0.0, Vec3::zeros()), |(mass, moment), i| (mass + i.mass, moment + i.mc))
@@ -105,7 +116,7 @@ pub(crate) fn begin(model: &Model, state: &State, ws: &mut Workspace) {
     ws.queries_start = ws.detector.narrow_count();
     for i in 0..model.vehicles.len() {
         ws.base_start[i] = ws.kin[i].vel[0];
-        ws.momentum_start[i] = state.momentum[i].force;
+        ws.momentum_start[i] = own_momentum(model, state, ws, i);
         let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
         ws.centre_start[i] = ws.kin[i].anchor + first_moment / mass;
     }
@@ -113,7 +124,9 @@ pub(crate) fn begin(model: &Model, state: &State, ws: &mut Workspace) {
 
 /// Velocities at the new state, whose positions `ws` holds, and what is remembered of it.
 pub(crate) fn finish(model: &Model, state: &mut State, ws: &mut Workspace) {
+    let now = std::mem::replace(&mut state.time, ws.end);
     ws.update_velocities(model, state);
+    state.time = now;
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| c.dry.is_some()) {
         let moved = state.q[coordinate.q_index] - ws.q_start[coordinate.q_index];
         state.dry[i] = coordinate.advance_dry(state.dry[i], moved, ws.step);
@@ -151,10 +164,14 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
         for k in range.clone() {
             ws.v_mid[k] = state.v[k] + if half_gain { 0.5 * ws.v_gain[k] } else { 0.0 };
         }
-        let motion = Accelerations { base: Twist::default(), v: &ws.v_mid[range.clone()], v_dot: &ws.zero[range] };
+        let motion =
+            Accelerations { base: ws.base_acceleration[i], v: &ws.v_mid[range.clone()], v_dot: &ws.zero[range] };
         let bodies = vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len();
         ws.dynamics[i].calc_body_wrenches(&vehicle.tree, &ws.kin[i], &motion, &ws.external[bodies.clone()]);
         ws.bias[bodies].copy_from_slice(&ws.dynamics[i].wrench);
+    }
+    if ws.parts.has_parts {
+        ws.bias.iter_mut().zip(&ws.parts.internal).for_each(|(bias, internal)| *bias -= *internal);
     }
 }
 
@@ -268,6 +285,9 @@ fn recalc_bias_at_midpoint(model: &Model, state: &State, ws: &mut Workspace) {
         let (kin, range) = (&mut ws.kin[i], vehicle.v_range());
         kin.update_velocities(&vehicle.tree, &(base + gain * 0.5), &ws.v_mid[range]);
     }
+    if effect::depends_on_twists(model) {
+        calc_external(model, state, ws);
+    }
     calc_bias(model, state, ws, true);
     for i in 0..ws.touches.len() {
         let carried = crate::contacts::calc_carried(model, ws, &ws.touches[i]) * ws.step;
@@ -376,6 +396,7 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         state.account.passive_joint_work += (force.effort - force.through - force.by_effects) * moved;
         state.account.effect_work += by_effects;
     }
+    effect::add_impulses(model, state, ws, h);
     for (body, &(vehicle, local)) in model.owners.iter().enumerate() {
         let external = ws.external[body];
         if external == Wrench::default() {
@@ -392,7 +413,7 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
 fn add_impulse(model: &Model, state: &mut State, ws: &Workspace, body: usize, point: &Vec3, impulse: &Wrench) {
     let Some(&(vehicle, _)) = model.owners.get(body) else { return };
     let owner = &model.vehicles[vehicle];
-    if owner.base == Base::Free {
+    if matches!(owner.base, Base::Free | Base::Driven(_)) {
         state.momentum[vehicle] += *impulse;
     } else if owner.base != Base::Fixed {
         let anchor = ws.kin[vehicle].anchor;
@@ -424,7 +445,7 @@ fn drift_joints(model: &Model, state: &mut State, ws: &mut Workspace, h: f64) {
 }
 
 pub(crate) fn moved_base(base: Base, pose: &Pose, moved: &Vec3, turned: &Vec3) -> Pose {
-    if base == Base::Fixed {
+    if base.is_held() {
         return *pose;
     }
     let mask = base.mask();
@@ -442,6 +463,7 @@ fn drift_to_midpoint(model: &Model, state: &mut State, ws: &mut Workspace, half:
         state.bases[i] = moved_base(vehicle.base, &state.bases[i], &(half * twist.lin), &(half * twist.ang));
     }
     drift_joints(model, state, ws, half);
+    drive::place(model, state, state.time + half);
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let base = ws.base_start[i];
         let kin = &mut ws.kin[i];

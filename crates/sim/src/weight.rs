@@ -25,6 +25,7 @@ impl PairLaw {
             NormalLaw::SpringDamper { stiffness, damping } => {
                 NormalLaw::SpringDamper { stiffness: w * stiffness, damping: w * damping }
             }
+            NormalLaw::Constant { force } => NormalLaw::Constant { force: w * force },
         };
         Self {
             normal: Normal { law, adhesion: w * self.normal.adhesion },

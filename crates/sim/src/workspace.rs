@@ -2,6 +2,7 @@
 
 use crate::actuator::{CoordinateForce, CoordinatePoint};
 use crate::contacts::Touch;
+use crate::effect::calc_carried;
 use crate::model::{Base, Model, Vehicle};
 use crate::state::State;
 use contact::{ContactPoint, Detector};
@@ -39,6 +40,10 @@ pub(crate) struct Workspace {
     pub momentum_start: Vec<Vec3>,
     pub centre_start: Vec<Vec3>,
     pub base_gain: Vec<Twist>,
+    /// Per vehicle: spatial acceleration of a driven base in this stage or step, and its gain in the step; else zero.
+    pub base_acceleration: Vec<Twist>,
+    pub drive_gain: Vec<Twist>,
+    pub drive_start: Vec<crate::drive::DriveStart>,
     pub q_start: Vec<f64>,
     pub queries_start: u64,
     pub v_gain: Vec<f64>,
@@ -52,6 +57,7 @@ pub(crate) struct Workspace {
     pub coordinate_lines: Vec<(f64, f64)>,
     pub islands: crate::solve::Islands,
     pub memories: Vec<crate::state::ContactMemory>,
+    pub parts: crate::effect::Parts,
     pub rk: crate::rk4::Stages,
     pub backup: State,
 }
@@ -85,6 +91,9 @@ impl Workspace {
             q_start: vec![0.0; model.nq()],
             queries_start: 0,
             base_gain: vec![Twist::default(); model.vehicles.len()],
+            base_acceleration: vec![Twist::default(); model.vehicles.len()],
+            drive_gain: vec![Twist::default(); model.vehicles.len()],
+            drive_start: Vec::with_capacity(model.drives.len()),
             v_gain: vec![0.0; nv],
             v_mid: vec![0.0; nv],
             tau: vec![0.0; nv],
@@ -95,6 +104,7 @@ impl Workspace {
             coordinate_lines: vec![(0.0, 0.0); nv],
             islands: crate::solve::Islands::new(model),
             memories: Vec::new(),
+            parts: crate::effect::Parts::new(model),
             rk: crate::rk4::Stages::new(model),
             backup: State::new(model),
         }
@@ -115,11 +125,24 @@ impl Workspace {
         for (i, vehicle) in model.vehicles.iter().enumerate() {
             let kin = &mut self.kin[i];
             kin.update_velocities(&vehicle.tree, &Twist::default(), &state.v[vehicle.v_range()]);
-            let base = calc_base_twist(vehicle, kin, &state.momentum[i]);
+            let base = match vehicle.base {
+                Base::Driven(k) => model.drives[k].calc_motion(state.time).twist,
+                _ => {
+                    let carried =
+                        if self.parts.has_parts { calc_carried(model, state, i, kin) } else { Wrench::default() };
+                    calc_base_twist(vehicle, kin, &state.momentum[i], &carried)
+                }
+            };
             for twist in &mut kin.vel {
                 *twist += base;
             }
         }
+    }
+
+    /// What a body's twist about its vehicle's anchor gains with its driven base in this step.
+    #[inline]
+    pub fn drive_gain_of(&self, model: &Model, body: usize) -> Twist {
+        model.owners.get(body).map_or(Twist::default(), |&(vehicle, _)| self.drive_gain[vehicle])
     }
 
     /// Twist of a global body about the point at `point` (W), W axes; zero for the world.
@@ -131,15 +154,22 @@ impl Workspace {
     }
 }
 
-/// Base twist (about the anchor) of a vehicle whose kinematics hold the twists with the base held.
-fn calc_base_twist(vehicle: &Vehicle, kin: &Kinematics, momentum: &Wrench) -> Twist {
+/// Base twist (about the anchor) of a vehicle whose kinematics hold the twists with the base held; `carried` is what the
+/// parts inside its bodies have of the momentum, about the anchor.
+fn calc_base_twist(vehicle: &Vehicle, kin: &Kinematics, momentum: &Wrench, carried: &Wrench) -> Twist {
     if vehicle.base == Base::Fixed {
         return Twist::default();
+    }
+    if let (Base::Only([false, false, false, x, y, z]), 1) = (vehicle.base, kin.inertia.len()) {
+        // A body that does not turn is a point.
+        let rate = momentum.force / kin.inertia[0].mass;
+        let free = |on: bool, rate: f64| if on { rate } else { 0.0 };
+        return Twist::new(Vec3::zeros(), Vec3::new(free(x, rate.x), free(y, rate.y), free(z, rate.z)));
     }
     let locked = calc_locked_inertia(kin);
     let about_anchor = Wrench::new(momentum.moment - kin.anchor.cross(&momentum.force), momentum.force);
     let relative = if vehicle.tree.nv == 0 { Wrench::default() } else { calc_momentum(kin) };
-    let h = about_anchor - relative;
+    let h = about_anchor - relative - *carried;
     match vehicle.base {
         Base::Free => locked.twist_of(&h).unwrap_or(Twist::new(Vec3::repeat(f64::NAN), Vec3::repeat(f64::NAN))),
         _ => solve_masked(&SpatialMatrix::from(&locked), &h, &vehicle.base.mask()),

@@ -1,5 +1,6 @@
 //! A model and its state, advancing.
 
+use crate::drive;
 use crate::effect;
 use crate::error::StepError;
 use crate::mechanism::{self, MechanismKind, MechanismMemory, MechanismReport};
@@ -60,9 +61,15 @@ impl World {
         state.mechanisms.extend(model.mechanisms.iter().skip(known).map(|m| m.kind.start()));
         // Likewise of effects.
         state.effects.resize(model.effects.n_memory(), 0.0);
+        let is_blank = !state.is_settled && effect::is_blank(&model, &state);
         let ws = Workspace::new(&model);
         let mut world = Self { model, state, ws, is_fresh: false };
         world.refresh();
+        if is_blank && world.ws.parts.has_parts {
+            effect::rest_parts(&world.model, &mut world.state, &world.ws);
+            world.is_fresh = false;
+            world.refresh();
+        }
         world
     }
 
@@ -95,19 +102,27 @@ impl World {
     /// Brings kinematics and twists up to a state that was changed.
     pub fn refresh(&mut self) {
         if !self.is_fresh {
+            let now = self.state.time;
+            drive::place(&self.model, &mut self.state, now);
             self.ws.update_positions(&self.model, &self.state);
             self.ws.update_velocities(&self.model, &self.state);
             self.is_fresh = true;
         }
     }
 
-    /// Sets base twists (about each base's origin, W axes) at the present poses and rates: writes the momentum.
+    /// Sets base twists (about each base's origin, W axes) at the present poses and rates: writes the momentum. What
+    /// effects put inside the bodies comes to rest with them; [`World::set_effect_memory`] moves it.
     pub fn set_base_twists(&mut self, twists: &[Twist]) {
+        let now = self.state.time;
+        drive::place(&self.model, &mut self.state, now);
         self.ws.update_positions(&self.model, &self.state);
         for (i, vehicle) in self.model.vehicles.iter().enumerate() {
             let kin = &mut self.ws.kin[i];
             kin.update_velocities(&vehicle.tree, &twists[i], &self.state.v[vehicle.v_range()]);
             self.state.momentum[i] = calc_world_momentum(vehicle, kin);
+        }
+        if self.ws.parts.has_parts {
+            effect::rest_parts(&self.model, &mut self.state, &self.ws);
         }
         self.is_fresh = false;
         self.refresh();
@@ -154,6 +169,20 @@ impl World {
         let longest = effect::calc_longest_step(&self.model, &self.state);
         // The last part may be a rounding error longer.
         if to_switch <= longest * (1.0 + 1e-9) { to_switch } else { to_switch / (to_switch / longest - 1e-9).ceil() }
+    }
+
+    /// The effects' memory in the coordinates of [`crate::memory_layout`], at the last refreshed state.
+    pub fn effect_memory(&self) -> Vec<f64> {
+        effect::calc_relative(&self.model, &self.state, &self.ws)
+    }
+
+    /// Sets the effects' memory from the coordinates of [`crate::memory_layout`]; missing ones are zero. Every body keeps
+    /// its twist, and the momentum becomes what belongs to it.
+    pub fn set_effect_memory(&mut self, relative: &[f64]) {
+        self.refresh();
+        effect::set_relative(&self.model, &mut self.state, &self.ws, relative);
+        self.is_fresh = false;
+        self.refresh();
     }
 
     /// When the next command that an effect delays begins to act, s; none where none is on its way.
@@ -221,6 +250,17 @@ impl World {
         Ok(())
     }
 
+    /// Momentum of the parts that effects put inside a vehicle's bodies, about W's origin, W axes.
+    pub(crate) fn carried_momentum(&self, vehicle: usize) -> Wrench {
+        let kin = &self.ws.kin[vehicle];
+        effect::calc_carried(&self.model, &self.state, vehicle, kin).about(&-kin.anchor)
+    }
+
+    /// Kinematics of all vehicles at the present state.
+    pub(crate) fn all_kinematics(&self) -> &[Kinematics] {
+        &self.ws.kin
+    }
+
     /// Kinematics of a vehicle at the present state.
     pub fn kinematics(&self, vehicle: usize) -> &Kinematics {
         &self.ws.kin[vehicle]
@@ -271,6 +311,13 @@ impl World {
                 *memory = MechanismMemory { since, offset, ..MechanismMemory::default() };
             }
         }
+    }
+
+    /// Evaluates contact at the present state, so that [`Self::touches`] tells the forces of this instant and not those
+    /// of the step that led to it: what a force sensor reads now. Nothing advances.
+    pub fn refresh_touches(&mut self) {
+        self.refresh();
+        rk4::refresh_touches(&self.model, &self.state, &mut self.ws);
     }
 
     /// The points that touched in the last step.

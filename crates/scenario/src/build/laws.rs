@@ -35,6 +35,8 @@ fn normal_law(law: &NormalLaw) -> Normal {
             law: contact::NormalLaw::SpringDamper { stiffness: stiffness_n_per_m, damping: damping_n_s_per_m },
             adhesion: adhesion_n,
         },
+        // The model knows mass and gravity, and fills the force in.
+        NormalLaw::DeadWeight {} => Normal::new(contact::NormalLaw::Constant { force: 0.0 }),
     }
 }
 
@@ -79,5 +81,6 @@ fn bristle(law: &BristleFriction) -> Bristle {
         stiffness: law.stiffness_n_per_m,
         damping: law.damping_n_s_per_m,
         viscous: law.viscous_n_s_per_m,
+        ..Bristle::default()
     }
 }

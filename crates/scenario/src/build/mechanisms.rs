@@ -150,7 +150,7 @@ fn settled_kind(spec: &spec::MechanismKind, world: &World, i: usize) -> Option<M
 
 /// Mass (kg) and mean moment of inertia about a point (kg·m²) of the whole vehicle on one side.
 fn calc_burden(world: &World, side: &Anchor, point_w: &Vec3) -> [f64; 2] {
-    let moving = side.vehicle.filter(|v| world.model().vehicles[*v].base != Base::Fixed);
+    let moving = side.vehicle.filter(|v| !world.model().vehicles[*v].base.is_held());
     let Some(v) = moving else { return [f64::INFINITY; 2] };
     let kin = world.kinematics(v);
     let about_point = calc_locked_inertia(kin).transformed(&Mat3::identity(), &(kin.anchor - point_w));

@@ -5,6 +5,7 @@
 mod actuators;
 mod beds;
 mod docking;
+mod drives;
 mod effects;
 mod faults;
 mod kinematics;
@@ -16,6 +17,7 @@ mod vehicles;
 
 pub(crate) use actuators::ActuatorTable;
 pub use docking::docking_visuals;
+pub use drives::DriveChannel;
 pub(crate) use faults::Faults;
 pub(crate) use kinematics::{calc_error, halves, solve_pose};
 pub use shapes::shape_of_geometry;
@@ -36,6 +38,8 @@ pub struct Mission {
     pub robots: Vec<RobotDescription>,
     /// The world at t = 0.
     pub world: World,
+    /// The driven coordinates, in the order of [`Model::with_drive_paths`].
+    pub drives: Vec<DriveChannel>,
     /// Guidance and control.
     pub controller: Box<dyn Controller + Send + Sync>,
     /// Steps of the whole run.
@@ -55,13 +59,21 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
     let mut faults = Faults::new(scenario);
     let plan = effects::check(scenario, &mut faults);
     let Some(vehicles) = vehicles::load(scenario, &plan, &mut faults) else { return Err(faults.into_errors()) };
-    let (robots, mut specs) = vehicles;
+    let (robots, nominal_coms, mut specs) = vehicles;
     let table = actuators::resolve(scenario, &mut specs, &mut faults);
     let (shapes, pairs) = shapes::resolve(scenario, &robots, &specs, &mut faults);
     let mechanisms = mechanisms::resolve(scenario, &specs, &mut faults);
     let environment = environment(&scenario.environment);
-    let mut parts =
-        effects::Parts { vehicles: specs, table, shapes, pairs, mechanisms, environment, effects: Vec::new() };
+    let mut parts = effects::Parts {
+        vehicles: specs,
+        nominal_coms,
+        table,
+        shapes,
+        pairs,
+        mechanisms,
+        environment,
+        effects: Vec::new(),
+    };
     effects::apply(&plan, &mut parts, &mut faults);
     refuse_what_is_not_simulated(scenario, &mut faults);
     if !faults.is_empty() {
@@ -80,22 +92,24 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
         one_sided_force: Vec3::zeros(),
     };
     let model = match Model::build(spec) {
-        Ok(model) => Arc::new(model),
+        Ok(model) => drives::attach(scenario, model, &mut faults),
         Err(error) => {
             faults.add("", error.to_string());
             return Err(faults.into_errors());
         }
     };
-    finish(scenario, robots, &model, &parts.table, faults)
+    let Some((model, drives)) = model else { return Err(faults.into_errors()) };
+    finish(scenario, robots, (&Arc::new(model), drives), &parts.table, faults)
 }
 
 fn finish(
     scenario: &Scenario,
     robots: Vec<RobotDescription>,
-    model: &Arc<Model>,
+    (model, drives): (&Arc<Model>, Vec<DriveChannel>),
     table: &ActuatorTable,
     mut faults: Faults<'_>,
 ) -> Result<Mission, ScenarioErrors> {
+    check_sensors(scenario, model, &mut faults);
     let world = mechanisms::settle(scenario, start::world(scenario, model, table, &mut faults));
     let controller = strategy::build(scenario, model, table, &mut faults);
     match controller {
@@ -103,6 +117,7 @@ fn finish(
             scenario: scenario.clone(),
             robots,
             world,
+            drives,
             controller,
             steps: (scenario.duration_s / scenario.integrator.step_s).round().max(1.0) as u64,
             steps_per_sample: samples(scenario),
@@ -117,13 +132,19 @@ fn samples(scenario: &Scenario) -> u64 {
 
 /// The file's words are ahead of the simulator's: what is understood and not yet simulated is refused, never ignored.
 fn refuse_what_is_not_simulated(scenario: &Scenario, faults: &mut Faults<'_>) {
-    let later =
-        |what: &str| format!("{what} are read and checked, but not simulated in this version; remove the entry");
-    if !scenario.drives.is_empty() {
-        faults.add("drive[0]", later("prescribed motions"));
+    for (i, _) in scenario.sensors.iter().enumerate().filter(|(_, s)| !s.kind.is_simulated()) {
+        let reason = "sensors of this kind are read and checked, but not simulated in this version; remove the entry";
+        faults.add(&format!("sensor[{i}]"), reason);
     }
-    if !scenario.sensors.is_empty() {
-        faults.add("sensor[0]", later("sensors"));
+}
+
+/// Every sensor measures something.
+fn check_sensors(scenario: &Scenario, model: &Model, faults: &mut Faults<'_>) {
+    for (i, sensor) in scenario.sensors.iter().enumerate() {
+        let name = format!("sensor.{}.force", sensor.name);
+        if let Err(error) = crate::measure::Gauge::resolve(scenario, model, &name) {
+            faults.add(&format!("sensor[{i}]"), error.fault);
+        }
     }
 }
 

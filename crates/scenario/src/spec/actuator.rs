@@ -4,6 +4,7 @@ use super::pose::PoseSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use spatial::Vec3;
+use std::collections::BTreeMap;
 
 /// A motor, thruster or wheel, commanded by its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -256,8 +257,8 @@ pub enum DriveMotion {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         velocity_m_per_s: Option<f64>,
     },
-    /// Piecewise cubic through points, [t in s, value].
-    #[schemars(extend("x-exactly-one" = [["points_s_deg", "points_s_m"]]))]
+    /// The cubic spline through points, [t in s, value], at rest at both ends.
+    #[schemars(extend("x-exactly-one" = [["points_s_deg", "points_s_m", "points_s_xyz_m"]]))]
     Points {
         /// Points of an angle, [s, deg].
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -267,14 +268,42 @@ pub enum DriveMotion {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(min = 1), extend("x-ascending" = true))]
         points_s_m: Vec<[f64; 2]>,
+        /// Points of a displacement along x, y and z of `pose`, [s, m, m, m].
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(min = 1), extend("x-ascending" = true))]
+        points_s_xyz_m: Vec<[f64; 4]>,
     },
-    /// As a channel of a recording moved.
+    /// As channels of a recording moved, smoothed by what their noise allows.
+    #[schemars(extend("x-exactly-one" = [["channel", "channels"]]))]
     Recording {
-        /// The recording, relative to the scenario file.
+        /// The recording, relative to the scenario file; where absent, that of the strategy `replay` or of a diagnosis.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1))]
-        file: String,
-        /// The channel that holds the position, rad or m.
+        file: Option<String>,
+        /// The channel that holds a displacement along z of `pose`, m.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1))]
-        channel: String,
+        channel: Option<String>,
+        /// The channels that hold displacements along axes of `pose` ("x", "y", "z", m) and about its z ("yaw", rad).
+        #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+        channels: BTreeMap<DriveAxis, String>,
+        /// Standard deviation of a sample, m or rad; estimated where absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        noise: Option<f64>,
     },
+}
+
+/// A coordinate of a driven base, in the axes of the drive's `pose`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DriveAxis {
+    /// Along x.
+    X,
+    /// Along y.
+    Y,
+    /// Along z.
+    Z,
+    /// About z.
+    Yaw,
 }

@@ -136,6 +136,8 @@ pub enum NormalLaw {
         #[schemars(range(min = 0.0))]
         adhesion_n: f64,
     },
+    /// f_n = weight of a guided body on a half-space: nothing gives way, one contact point below the body's origin.
+    DeadWeight {},
 }
 
 /// Exponent of a sphere on a plane.

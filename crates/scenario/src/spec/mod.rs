@@ -21,7 +21,7 @@ mod shape;
 mod strategy;
 mod vehicle;
 
-pub use actuator::{Actuator, ActuatorKind, Drive, DriveMotion, JointDrive};
+pub use actuator::{Actuator, ActuatorKind, Drive, DriveAxis, DriveMotion, JointDrive};
 pub use campaign::{Campaign, Disperse, Expect, Normal, Scalar, Uniform};
 pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw, Pivot};
 pub use effect::{Effect, ParamValue};
@@ -30,7 +30,7 @@ pub use mechanism::{
     Capture, Hold, Latch, Mechanism, MechanismKind, MechanismSide, Overload, PerAxis, Strut, StrutSides, Weld,
 };
 pub use pose::{PoseSpec, TwistSpec};
-pub use sensor::{Sensor, SensorKind};
+pub use sensor::{MechanismEnd, Sensor, SensorKind};
 pub use shape::{Shape, ShapeKind};
 pub use strategy::{Command, OneOrMany, Replay, Schedule, Strategy, TrackAndGrasp};
 pub use vehicle::{Base, BaseAxis, BaseKind, EndEffectorPose, JointStart, PartialBase, Vehicle};

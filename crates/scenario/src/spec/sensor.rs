@@ -120,4 +120,59 @@ pub enum SensorKind {
         #[serde(default)]
         torque_bias_n_m: [f64; 3],
     },
+    /// Contact force on a part and its moment about the sensor, in the sensor's axes; what is beyond it weighs nothing.
+    ContactForce {
+        /// The shape that is touched, or the link of which all shapes count, as `vehicle/name`.
+        #[schemars(extend("x-refers" = "vehicle/part"))]
+        part: String,
+        /// Link that carries the sensor, as `vehicle/link`.
+        #[schemars(extend("x-refers" = "vehicle/part"))]
+        link: String,
+        /// Pose of the sensor in the link.
+        #[serde(default)]
+        pose: PoseSpec,
+        /// Noise of the force, standard deviation on each axis, N.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        force_noise_n: f64,
+        /// Noise of the moment, standard deviation about each axis, N·m.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        torque_noise_n_m: f64,
+    },
+    /// What a mechanism does to one of its sides, W axes; the moment is about the point where it acts.
+    MechanismForce {
+        /// The mechanism.
+        #[schemars(extend("x-refers" = "mechanism"))]
+        mechanism: String,
+        /// The side that feels the force.
+        #[serde(default)]
+        on: MechanismEnd,
+        /// Noise of the force, standard deviation on each axis, N.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        force_noise_n: f64,
+        /// Noise of the moment, standard deviation about each axis, N·m.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        torque_noise_n_m: f64,
+    },
+}
+
+impl SensorKind {
+    /// Whether this version simulates it.
+    pub fn is_simulated(&self) -> bool {
+        matches!(self, Self::ContactForce { .. } | Self::MechanismForce { .. })
+    }
+}
+
+/// A side of a mechanism.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum MechanismEnd {
+    /// Its side a.
+    A,
+    /// Its side b.
+    #[default]
+    B,
 }

@@ -173,7 +173,7 @@ impl Coupling {
 /// Gain of a coordinate per generalised impulse on one body alone, 1/kg or 1/(kg·m²).
 fn calc_mobility(model: &Model, ws: &Workspace, body: usize, row: &Wrench) -> f64 {
     let Some(&(vehicle, local)) = model.owners.get(body) else { return 0.0 };
-    if *row == Wrench::default() || (local == 0 && model.vehicles[vehicle].base == Base::Fixed) {
+    if *row == Wrench::default() || (local == 0 && model.vehicles[vehicle].base.is_held()) {
         return 0.0;
     }
     ws.kin[vehicle].inertia[local].twist_of(row).map_or(f64::INFINITY, |twist| twist.dot(row))
@@ -258,13 +258,18 @@ impl Coupling {
     }
 }
 
-/// Adds the lines' wrenches at zero gain to both bodies.
+/// Adds the lines' wrenches to both bodies, at zero gain of all that forces move.
 pub(crate) fn add_wrenches(model: &Model, ws: &mut Workspace) {
     for coupling in &ws.couplings {
+        let driven = match model.drives.is_empty() {
+            true => [0.0; MAX_ROWS],
+            false => coupling.calc_relative(|body| ws.drive_gain_of(model, body)),
+        };
         for (k, sign) in [(0, -1.0), (1, 1.0)] {
             let body = coupling.bodies[k];
             if body < model.owners.len() {
-                for (row, force) in coupling.rows[k].iter().zip(&coupling.line) {
+                for (i, row) in coupling.rows[k].iter().enumerate() {
+                    let force = coupling.line[i] - coupling.slope[i] * driven[i];
                     ws.contact[body] += *row * (sign * force);
                 }
             }
@@ -316,7 +321,7 @@ fn add_impulse(
 ) {
     let Some(&(vehicle, _)) = model.owners.get(body) else { return };
     let owner = &model.vehicles[vehicle];
-    if owner.base == Base::Free {
+    if matches!(owner.base, Base::Free | Base::Driven(_)) {
         state.momentum[vehicle] += *about_origin;
     } else if owner.base != Base::Fixed {
         let anchor = ws.kin[vehicle].anchor;

@@ -6,6 +6,8 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod beds;
+mod body_loads;
+mod body_parts;
 mod brush;
 mod convergence;
 mod determinism;

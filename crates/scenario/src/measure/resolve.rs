@@ -1,0 +1,119 @@
+//! Names of channels → quantities of a model.
+
+use super::Quantity;
+use super::force::ForceGauge;
+use crate::spec::{MechanismEnd, Scenario, SensorKind};
+use crate::spelling::hint_for_name;
+use multibody::{Joint, JointKind};
+use sim::Model;
+
+/// Quantity and component of a channel.
+pub(super) fn split(channel: &str) -> (&str, Option<&str>) {
+    match channel.rsplit_once('.') {
+        Some((name, component)) if ["x", "y", "z", "w"].contains(&component) => (name, Some(component)),
+        _ => (channel, None),
+    }
+}
+
+/// Index of a component; a number has none.
+pub(super) fn component(is_scalar: bool, is_rotation: bool, name: Option<&str>) -> Option<usize> {
+    match (is_scalar, name) {
+        (true, None) => Some(0),
+        (false, Some("w")) if !is_rotation => None,
+        (false, Some(name)) => ["x", "y", "z", "w"].iter().position(|k| *k == name),
+        _ => None,
+    }
+}
+
+pub(super) fn quantity(scenario: &Scenario, model: &Model, name: &str) -> Result<Quantity, String> {
+    let parts = name.split_once('.').and_then(|(family, rest)| Some((family, rest.rsplit_once('.')?)));
+    let Some((family, (name, what))) = parts else {
+        return Err("is not of the form family.name.quantity, as body.slider.position".to_owned());
+    };
+    match (family, what) {
+        ("joint", "position") => Ok(Quantity::JointPosition(joint(model, name)?)),
+        ("joint", "velocity") => Ok(Quantity::JointVelocity(joint(model, name)?)),
+        ("joint", "effort") => Ok(Quantity::JointEffort(joint(model, name)?)),
+        ("body", "position") => link(model, name).map(|(v, l)| Quantity::Position(v, l)),
+        ("body", "orientation") => link(model, name).map(|(v, l)| Quantity::Orientation(v, l)),
+        ("body", "linear_velocity") => link(model, name).map(|(v, l)| Quantity::LinearVelocity(v, l)),
+        ("body", "angular_velocity") => link(model, name).map(|(v, l)| Quantity::AngularVelocity(v, l)),
+        ("sensor", "force") => Ok(Quantity::Force(force(scenario, model, name)?)),
+        ("sensor", "torque") => Ok(Quantity::Torque(force(scenario, model, name)?)),
+        ("drive", "position") => Ok(Quantity::DrivePosition(drive(model, name)?)),
+        ("drive", "angle") => Ok(Quantity::DriveAngle(drive(model, name)?)),
+        ("actuator", "command") => Ok(Quantity::Command(actuator(model, name)?)),
+        _ => {
+            Err(format!("nothing is measured as \"{family}.….{what}\"; see the table of channels in the documentation"))
+        }
+    }
+}
+
+/// The one of `(vehicle, name)` that a text means: `vehicle/name`, or the name where only one has it.
+fn only<'a, T: Copy>(what: &str, text: &str, all: impl Iterator<Item = (&'a str, &'a str, T)>) -> Result<T, String> {
+    let all: Vec<(&str, &str, T)> = all.collect();
+    let full = |c: &(&str, &str, T)| format!("{}/{}", c.0, c.1);
+    let found: Vec<_> = all.iter().filter(|c| c.1 == text || full(c) == text).collect();
+    match found[..] {
+        [one] => Ok(one.2),
+        [] => Err(format!("no {what} \"{text}\"{}", hint_for_name(text, all.iter().map(|c| c.1)))),
+        _ => Err(format!("{what} \"{text}\" is in several vehicles; write {}", full(found[0]))),
+    }
+}
+
+fn joint(model: &Model, name: &str) -> Result<usize, String> {
+    let single = |j: &&Joint| !j.is_mimic && matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
+    let of = |v: &'_ sim::Vehicle| v.v0;
+    let all = model.vehicles.iter().flat_map(|v| {
+        v.tree.joints.iter().filter(single).map(move |j| (v.name.as_str(), j.name.as_str(), of(v) + j.v_index))
+    });
+    only("joint", name, all)
+}
+
+fn link(model: &Model, name: &str) -> Result<(usize, usize), String> {
+    let all = model.vehicles.iter().enumerate().flat_map(|(v, vehicle)| {
+        vehicle.tree.links.iter().enumerate().map(move |(l, link)| (vehicle.name.as_str(), link.name.as_str(), (v, l)))
+    });
+    only("link", name, all).or_else(|error| model.vehicle(name).map(|v| (v, 0)).ok_or(error))
+}
+
+fn drive(model: &Model, name: &str) -> Result<usize, String> {
+    let hint = || hint_for_name(name, model.drives.iter().map(|d| d.name.as_str()));
+    model.drives.iter().position(|d| d.name == name).ok_or_else(|| format!("no drive \"{name}\"{}", hint()))
+}
+
+fn actuator(model: &Model, name: &str) -> Result<usize, String> {
+    let is = |a: &sim::Actuator| a.name == name || a.name.rsplit_once('/').is_some_and(|(_, last)| last == name);
+    let hint = || hint_for_name(name, model.actuators.iter().map(|a| a.name.as_str()));
+    model.actuators.iter().position(is).ok_or_else(|| format!("no actuator \"{name}\"{}", hint()))
+}
+
+fn force(scenario: &Scenario, model: &Model, name: &str) -> Result<ForceGauge, String> {
+    let Some(sensor) = scenario.sensors.iter().find(|s| s.name == name) else {
+        let hint = hint_for_name(name, scenario.sensors.iter().map(|s| s.name.as_str()));
+        return Err(format!("no sensor \"{name}\"{hint}"));
+    };
+    match &sensor.kind {
+        SensorKind::ContactForce { part, link: on, pose, .. } => {
+            let (vehicle, link) = link(model, on)?;
+            let (body, collider) = touched(model, part)?;
+            Ok(ForceGauge::Contact { body, collider, vehicle, link, pose_ls: pose.pose() })
+        }
+        SensorKind::MechanismForce { mechanism, on, .. } => {
+            let hint = || hint_for_name(mechanism, model.mechanisms.iter().map(|m| m.name.as_str()));
+            let index = model.mechanisms.iter().position(|m| m.name == *mechanism);
+            let index = index.ok_or_else(|| format!("no mechanism \"{mechanism}\"{}", hint()))?;
+            Ok(ForceGauge::Mechanism { index, sign: if *on == MechanismEnd::B { 1.0 } else { -1.0 } })
+        }
+        _ => Err(format!("sensor \"{name}\" reads no force that is simulated in this version")),
+    }
+}
+
+/// Global body and collider of a shape, or the body of a link, by `vehicle/name`.
+fn touched(model: &Model, part: &str) -> Result<(usize, Option<usize>), String> {
+    if let Some(collider) = model.collider_names.iter().position(|n| n == part) {
+        return Ok((model.scene.colliders()[collider].body, Some(collider)));
+    }
+    let (v, l) = link(model, part)?;
+    Ok((model.vehicles[v].body0 + model.vehicles[v].tree.links[l].body, None))
+}

@@ -1,0 +1,153 @@
+//! Faults of a sensor: what it makes of the value that it should read.
+//!
+//!   y(t) = scale · exp(angle)ᵀ x(t − delay) + bias,      an orientation  q(t − delay) exp(angle)
+//!
+//! `angle` is the rotation vector of the true sensor in its nominal frame. The effects sensor-bias, sensor-scale, sensor-delay
+//! and sensor-misalignment at `sensor:<channel prefix>` give it; several at one sensor come together. A prefix that names one
+//! component faults that component.
+
+use super::Reading;
+use crate::spec::{Effect, ParamValue};
+use spatial::{Vec3, exp_rotation};
+
+/// A sensor with faults; the default has none and changes no bit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorModel {
+    /// Added to the reading; of a number, x.
+    pub bias: Vec3,
+    /// Factors; of a number, x.
+    pub scale: Vec3,
+    /// Age of what is read, s.
+    pub delay: f64,
+    /// Rotation vector of the true sensor in its nominal frame, rad.
+    pub angle: Vec3,
+}
+
+impl Default for SensorModel {
+    fn default() -> Self {
+        Self { bias: Vec3::zeros(), scale: Vec3::repeat(1.0), delay: 0.0, angle: Vec3::zeros() }
+    }
+}
+
+impl SensorModel {
+    /// What the effects of a scenario make of the sensor of a quantity (`body.target.angular_velocity`).
+    pub fn of(effects: &[Effect], quantity: &str) -> Self {
+        let mut sensor = Self::default();
+        for effect in effects.iter().filter(|e| e.name.starts_with("sensor-")) {
+            if let Some(part) = effect.place.strip_prefix("sensor:").and_then(|prefix| part_of(prefix, quantity)) {
+                sensor.add(effect, part);
+            }
+        }
+        sensor
+    }
+
+    fn add(&mut self, effect: &Effect, part: Part) {
+        let on = |k: usize| part == Part::All || part == Part::Component(k);
+        let value = |name: &str| effect.params.get(name).and_then(ParamValue::numbers).unwrap_or_default();
+        let at = |values: &[f64], k: usize| if values.len() == 1 { Some(values[0]) } else { values.get(k).copied() };
+        match effect.name.as_str() {
+            "sensor-bias" => (0..3).filter(|k| on(*k)).for_each(|k| {
+                self.bias[k] += at(value("bias"), k).unwrap_or(0.0);
+            }),
+            "sensor-scale" => (0..3).filter(|k| on(*k)).for_each(|k| {
+                self.scale[k] *= at(value("scale"), k).unwrap_or(1.0);
+            }),
+            "sensor-delay" => self.delay += at(value("delay"), 0).unwrap_or(0.0),
+            "sensor-misalignment" => {
+                self.angle += Vec3::from_fn(|k, _| value("angle").get(k).copied().unwrap_or(0.0));
+            }
+            _ => {}
+        }
+    }
+
+    /// What the sensor makes of a value; its delay is the caller's business.
+    #[inline]
+    pub fn apply(&self, value: &Reading) -> Reading {
+        if self.bias == Vec3::zeros() && self.scale == Vec3::repeat(1.0) && self.angle == Vec3::zeros() {
+            return *value;
+        }
+        match *value {
+            Reading::Scalar(x) => Reading::Scalar(self.scale.x * x + self.bias.x),
+            Reading::Vector(v) => {
+                let seen = if self.angle == Vec3::zeros() { v } else { exp_rotation(&-self.angle) * v };
+                Reading::Vector(self.scale.component_mul(&seen) + self.bias)
+            }
+            Reading::Rotation(q) => Reading::Rotation(q * exp_rotation(&self.angle)),
+        }
+    }
+}
+
+/// The part of a quantity that a prefix of channels means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    All,
+    Component(usize),
+}
+
+/// A prefix ends where a word of the channel ends: `body.a` is not of `body.ab`.
+fn part_of(prefix: &str, quantity: &str) -> Option<Part> {
+    let begins =
+        |long: &str, short: &str| long == short || long.strip_prefix(short).is_some_and(|r| r.starts_with('.'));
+    if begins(quantity, prefix) {
+        return Some(Part::All);
+    }
+    let component = prefix.strip_prefix(quantity)?.strip_prefix('.')?;
+    ["x", "y", "z"].iter().position(|k| *k == component).map(Part::Component)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spatial::Rot;
+
+    fn effect(name: &str, place: &str, key: &str, value: ParamValue) -> Effect {
+        Effect { name: name.to_owned(), place: place.to_owned(), params: [(key.to_owned(), value)].into() }
+    }
+
+    const GYRO: &str = "body.target.angular_velocity";
+
+    #[test]
+    fn a_sensor_without_faults_changes_no_bit() {
+        let value = Reading::Vector(Vec3::new(0.1, -0.0, 1e-300));
+        assert_eq!(SensorModel::default().apply(&value), value);
+        let neutral = [
+            effect("sensor-bias", "sensor:body.target", "bias", ParamValue::Number(0.0)),
+            effect("sensor-scale", "sensor:body.target", "scale", ParamValue::Number(1.0)),
+        ];
+        assert_eq!(SensorModel::of(&neutral, GYRO), SensorModel::default());
+        let beside = [effect("sensor-scale", "sensor:body.target", "scale", ParamValue::Number(1.0 + 1e-6))];
+        assert_ne!(SensorModel::of(&beside, GYRO).apply(&value), value);
+    }
+
+    #[test]
+    fn a_sensor_turned_by_a_quarter_about_z_reads_x_as_minus_y() {
+        let angle = vec![0.0, 0.0, std::f64::consts::FRAC_PI_2];
+        let turned = [effect("sensor-misalignment", &format!("sensor:{GYRO}"), "angle", ParamValue::Numbers(angle))];
+        let sensor = SensorModel::of(&turned, GYRO);
+        let Reading::Vector(seen) = sensor.apply(&Reading::Vector(Vec3::x())) else { panic!("a vector") };
+        assert!((seen + Vec3::y()).norm() < 1e-15, "{seen}");
+        let body = Rot::from_euler_angles(0.3, -0.2, 0.9);
+        let Reading::Rotation(attitude) = sensor.apply(&Reading::Rotation(body)) else { panic!("a rotation") };
+        // The attitude of the true sensor: its x axis is the body's y.
+        assert!((attitude * Vec3::x() - body * Vec3::y()).norm() < 1e-15);
+    }
+
+    #[test]
+    fn factors_and_constants_of_one_sensor_come_together_and_of_another_not() {
+        let all = [
+            effect(
+                "sensor-bias",
+                "sensor:body.target.angular_velocity",
+                "bias",
+                ParamValue::Numbers(vec![1.0, 2.0, 3.0]),
+            ),
+            effect("sensor-scale", "sensor:body.target", "scale", ParamValue::Number(2.0)),
+            effect("sensor-bias", "sensor:body.target.angular_velocity.y", "bias", ParamValue::Number(0.5)),
+            effect("sensor-bias", "sensor:body.tar", "bias", ParamValue::Number(100.0)),
+            effect("sensor-delay", "sensor:body.target", "delay", ParamValue::Number(0.02)),
+        ];
+        let sensor = SensorModel::of(&all, GYRO);
+        assert_eq!(sensor.apply(&Reading::Vector(Vec3::repeat(1.0))), Reading::Vector(Vec3::new(3.0, 4.5, 5.0)));
+        assert_eq!(sensor.delay, 0.02);
+    }
+}
