@@ -219,9 +219,13 @@ pub fn vary(
         let coordinate = &set.members[*m].0.coordinates[*k];
         let at = set.members[*m].1[*k];
         let step = if at + size > coordinate.bounds[1] { -size } else { *size };
-        let mut moved = set.clone();
-        moved.members[*m].1[*k] += step;
-        Ok(Variation { built: plant.build(&moved.effects())?, step })
+        let vary_by = |step: f64| {
+            let mut moved = set.clone();
+            moved.members[*m].1[*k] += step;
+            Ok(Variation { built: plant.build(&moved.effects())?, step })
+        };
+        // At the edge of what can be built the other way is open.
+        vary_by(step).or_else(|_| vary_by(-step))
     };
     slots.iter().zip(sizes).map(vary_one).collect()
 }

@@ -118,7 +118,8 @@ fn refit_best(
             found: score.start.clone(),
         };
         if picked.iter().any(|p| std::ptr::eq(*p, score)) {
-            let tried = fit(stage, plant, now.set.with(h, &score.start), now.segments.clone(), LOOK)?;
+            let Some(start) = possible(plant, now, h, &score.start) else { continue };
+            let Ok(tried) = fit(stage, plant, now.set.with(h, &start), now.segments.clone(), LOOK) else { continue };
             attempt.fall = Some(now.cost - tried.cost);
             attempt.gain = Some(criterion(now) - criterion(&tried));
             attempt.found = tried.set.members.last().map(|m| m.1.clone()).unwrap_or_default();
@@ -130,6 +131,15 @@ fn refit_best(
         attempts.push(attempt);
     }
     Ok((best, attempts))
+}
+
+/// Coordinates that can be built: those given, or nearer to neutral (a screen may promise a part heavier than its body).
+fn possible(plant: &Plant, now: &Fit, h: &Hypothesis, start: &[f64]) -> Option<Vec<f64>> {
+    let neutral = h.neutral();
+    (0..8).map(|k| 0.5f64.powi(k)).find_map(|share| {
+        let x: Vec<f64> = start.iter().zip(&neutral).map(|(x, n)| n + share * (x - n)).collect();
+        plant.build(&now.set.with(h, &x).effects()).is_ok().then_some(x)
+    })
 }
 
 /// The best screen point of each hypothesis, best first.

@@ -3,7 +3,8 @@
 //!   U = Iᴬ S,  D = Sᵀ U,  u = τ − Sᵀ pᴬ
 //!   to the parent:  Iᴬ − U D⁻¹ Uᵀ,   pᴬ + Iᵃ c + U D⁻¹ u
 //!
-//! A joint's armature adds to its D. A mimic joint couples two places of the tree and breaks the recursion: use the mass matrix there.
+//! A joint's armature adds to its D. A mimic joint couples two places of the tree and breaks the recursion: use the mass
+//! matrix there.
 
 use crate::{Dynamics, Kinematics, Tree};
 use spatial::{Mat3, SpatialMatrix, Twist, Wrench, nalgebra};

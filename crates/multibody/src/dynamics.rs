@@ -50,8 +50,9 @@ impl Dynamics {
         self.calc_body_wrenches(tree, kin, motion, external);
         let base = self.collect(tree, kin, tau);
         for joint in tree.joints.iter().filter(|j| j.armature != 0.0 && !j.is_mimic) {
-            for k in joint.v_index..joint.v_index + joint.width {
-                tau[k] += joint.armature * motion.v_dot[k];
+            let range = joint.v_index..joint.v_index + joint.width;
+            for (tau, v_dot) in tau[range.clone()].iter_mut().zip(&motion.v_dot[range]) {
+                *tau += joint.armature * v_dot;
             }
         }
         base

@@ -250,7 +250,7 @@ pub(crate) fn commit(model: &Model, state: &mut State, ws: &Workspace) {
 pub(crate) fn calc_longest_step(model: &Model, state: &State) -> f64 {
     let is_slow = |effect: &Effect| match &effect.kind {
         EffectKind::Joint(joint) => joint.is_near_reversal(state.v[joint.coordinate]),
-        EffectKind::Series(_) | EffectKind::Line(_) => false,
+        _ => false,
     };
     let is_fine = model.integrator == Integrator::RungeKutta4 && model.effects.list.iter().any(is_slow);
     if is_fine { joint::REVERSAL_STEP } else { f64::INFINITY }
