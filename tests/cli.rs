@@ -119,7 +119,7 @@ fn names_that_do_not_exist_are_told_with_line_and_nearest_spelling() {
         ("[[actuator]]\nname = \"a\"\nkind = \"joint-torque\"\njoint = \"servicer/wrist_rol\"\n", "wrist_roll"),
         ("[[contact]]\nbetween = [\"servicer/pad_lft\", \"servicer/palm\"]\n", "pad_left"),
         ("[[shape]]\nname = \"s\"\non = \"servicer/buss\"\nkind = \"sphere\"\nradius_m = 0.1\n", "bus"),
-        ("[[effect]]\nname = \"payload\"\nplace = \"link:servicer/palm\"\nmass = 1.0\n", "not simulated"),
+        ("[[effect]]\nname = \"payloat\"\nplace = \"link:servicer/palm\"\nmass = 1.0\n", "did you mean \"payload\""),
         ("[vehicle.end_effector_pose]\nframe = \"grasp_frame\"\nposition_m = [9.0, 0.0, 0.0]\n", "cannot reach"),
     ];
     for (tail, expected) in cases {
@@ -189,4 +189,32 @@ fn view_shows_a_robot_and_a_scenario() {
         assert_eq!(output.status.code(), Some(0), "{}", error_of(&output));
         assert!(fs::metadata(out.join("view.rrd")).unwrap().len() > 10_000);
     }
+}
+
+#[test]
+fn score_judges_a_folder_and_its_status_says_whether_all_is_met() {
+    let dir = tempfile::tempdir().unwrap();
+    let (keys, diagnoses) = (place(&dir, "keys"), place(&dir, "out"));
+    fs::create_dir_all(&keys).unwrap();
+    fs::create_dir_all(diagnoses.join("a")).unwrap();
+    fs::write(keys.join("a.json"), r#"{"effects": [], "oracle": {"true": 1.0}}"#).unwrap();
+    let error = r#"{"before": 1.0, "after": 1.0}"#;
+    let diagnosis = |verdict: &str| {
+        format!(
+            r#"{{"verdict": "{verdict}", "located": [], "effects": [],
+                "error": {{"fit": {error}, "holdout": {error}, "window_s": 1, "windowed": {error}, "runs": []}}}}"#
+        )
+    };
+    for (verdict, status) in [("no-mismatch", 0), ("unknown", 1)] {
+        fs::write(diagnoses.join("a/diagnosis.json"), diagnosis(verdict)).unwrap();
+        let output = softdock(&["score", text(&diagnoses), text(&keys)]);
+        assert_eq!(output.status.code(), Some(status), "{}", error_of(&output));
+        assert!(String::from_utf8_lossy(&output.stdout).contains(verdict));
+    }
+    let json = softdock(&["score", text(&diagnoses), text(&keys), "--json"]).stdout;
+    assert_eq!(serde_json::from_slice::<serde_json::Value>(&json).unwrap()["holds"], false);
+    assert_eq!(softdock(&["score", text(&diagnoses), text(&place(&dir, "nowhere"))]).status.code(), Some(3));
+    let schema = softdock(&["schema", "--diagnosis"]).stdout;
+    let schema: serde_json::Value = serde_json::from_slice(&schema).unwrap();
+    assert!(schema["properties"]["verdict"].is_object());
 }

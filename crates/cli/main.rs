@@ -6,6 +6,7 @@
 
 mod check;
 mod diagnose;
+mod inspect;
 mod lab;
 mod live;
 mod new;
@@ -58,6 +59,8 @@ enum Subcommands {
     Score(score::Arguments),
     /// Print the JSON Schema of the scenario file, or of diagnosis.json
     Schema(schema::Arguments),
+    /// Show what is in a recording: channels, rates, gaps, noise, and what is wrong with it
+    Inspect(inspect::Arguments),
 }
 
 /// How a command ended.
@@ -81,6 +84,7 @@ fn main() -> ExitCode {
         Subcommands::Diagnose(arguments) => diagnose::main(&arguments),
         Subcommands::Score(arguments) => score::main(&arguments),
         Subcommands::Schema(arguments) => schema::main(&arguments),
+        Subcommands::Inspect(arguments) => inspect::main(&arguments),
     };
     match result {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,

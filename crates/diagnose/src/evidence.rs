@@ -303,3 +303,64 @@ pub struct Stage {
     /// Seconds simulated in it.
     pub simulated_s: f64,
 }
+
+/// `bins` equal bins from `start` to `end`: their edges.
+pub fn bin_edges(start: f64, end: f64, bins: usize) -> Vec<f64> {
+    (0..=bins).map(|k| start + (end - start) * k as f64 / bins.max(1) as f64).collect()
+}
+
+/// Mean square of a residual per bin; NaN where a bin has no sample.
+///
+/// `samples`: (time, residual in units of noise) in the order of time; samples outside the edges and residuals that are NaN do not
+/// count. The last bin has both its ends.
+pub fn mean_squares(samples: impl IntoIterator<Item = (f64, f64)>, edges: &[f64]) -> Vec<f64> {
+    let bins = edges.len().saturating_sub(1);
+    let mut sums = vec![(0.0, 0_usize); bins];
+    for (t, r) in samples {
+        let bin = edges.partition_point(|edge| *edge <= t).saturating_sub(1);
+        let bin = if edges.last().is_some_and(|end| t == *end) { bins.saturating_sub(1) } else { bin };
+        let is_inside = edges.first().is_some_and(|start| t >= *start) && bin < bins;
+        if is_inside && !r.is_nan() {
+            sums[bin].0 += r * r;
+            sums[bin].1 += 1;
+        }
+    }
+    sums.into_iter().map(|(sum, count)| if count > 0 { sum / count as f64 } else { f64::NAN }).collect()
+}
+
+/// Autocorrelation of an evenly sampled residual at lags 1 to `lags`, about its mean; with the bound that white noise keeps with 95 %.
+pub fn autocorrelation(residual: &[f64], lags: usize) -> (Vec<f64>, f64) {
+    let count = residual.len().max(1) as f64;
+    let mean = residual.iter().sum::<f64>() / count;
+    let product = |lag: usize| -> f64 {
+        let pairs = residual.iter().zip(residual.iter().skip(lag));
+        pairs.map(|(a, b)| (a - mean) * (b - mean)).sum()
+    };
+    let variance = product(0);
+    let at = |lag| if variance > 0.0 { product(lag) / variance } else { f64::NAN };
+    ((1..=lags).map(at).collect(), 1.96 / count.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bin_has_the_mean_square_of_its_samples() {
+        let edges = bin_edges(0.0, 3.0, 3);
+        assert_eq!(edges, [0.0, 1.0, 2.0, 3.0]);
+        let samples = [(-0.1, 9.0), (0.0, 1.0), (0.9, 3.0), (1.5, f64::NAN), (2.0, 2.0), (3.0, 4.0), (3.1, 9.0)];
+        let squares = mean_squares(samples, &edges);
+        assert_eq!((squares[0], squares[2]), (5.0, 10.0));
+        assert!(squares[1].is_nan() && mean_squares(samples, &[]).is_empty());
+    }
+
+    #[test]
+    fn an_alternating_residual_is_anticorrelated() {
+        let residual: Vec<f64> = (0..1000).map(|k| if k % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let (correlation, bound) = autocorrelation(&residual, 2);
+        assert!((correlation[0] + 0.999).abs() < 1e-9 && (correlation[1] - 0.998).abs() < 1e-9, "{correlation:?}");
+        assert!((bound - 1.96 / 1000_f64.sqrt()).abs() < 1e-12);
+        assert!(autocorrelation(&[0.0; 5], 1).0[0].is_nan());
+    }
+}

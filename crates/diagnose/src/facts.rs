@@ -112,15 +112,19 @@ impl Facts {
 fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
     let mut all = Vec::new();
     for vehicle in &built.model.vehicles {
-        let single = |j: &&multibody::Joint| !j.is_mimic && matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
+        let single =
+            |j: &&multibody::Joint| !j.is_mimic && matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
         for joint in vehicle.tree.joints.iter().filter(single) {
             let coordinate = vehicle.v0 + joint.v_index;
-            let drives = |i: usize| {
-                matches!(built.model.actuators[i].kind, ActuatorKind::JointEffort { coordinate: c, .. } if c == coordinate)
-            };
+            let drives = |i: usize| matches!(built.model.actuators[i].kind, ActuatorKind::JointEffort { coordinate: c, .. } if c == coordinate);
             let commands = tapes.iter().flat_map(|t| &t.commands).filter(|c| drives(c.actuator));
             let largest = commands.flat_map(|c| &c.efforts).fold(0.0_f64, |m, e| m.max(e.abs()));
-            all.push(JointFact { name: joint.name.clone(), coordinate, armature: 0.0, largest_command: largest });
+            all.push(JointFact {
+                name: joint.name.clone(),
+                coordinate,
+                armature: joint.armature,
+                largest_command: largest,
+            });
         }
     }
     all

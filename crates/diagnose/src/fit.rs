@@ -119,9 +119,16 @@ const NEXT_TO_NOTHING: f64 = 0.3;
 const DAMPINGS: usize = 7;
 
 /// Fits the starts alone (a set without members) or starts and set together.
-pub fn fit(stage: &Stage<'_>, plant: &Plant, set: EffectSet, segments: Vec<Segment>, effort: Effort) -> Result<Fit, DiagnoseError> {
+pub fn fit(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    set: EffectSet,
+    segments: Vec<Segment>,
+    effort: Effort,
+) -> Result<Fit, DiagnoseError> {
     let built = plant.build(&set.effects())?;
-    let segments: Vec<Segment> = segments.into_iter().map(|s| Segment { start: s.start.fitted_to(&built), ..s }).collect();
+    let segments: Vec<Segment> =
+        segments.into_iter().map(|s| Segment { start: s.start.fitted_to(&built), ..s }).collect();
     let (cost, count) = stage.cost(&built, &segments);
     let mut now = Fit {
         freedom: set.slots().len(),
@@ -179,8 +186,7 @@ fn iterate(
     for _ in 0..DAMPINGS {
         let theta = step(&a, &b, damping);
         let set = now.set.moved(&slots, theta.as_slice());
-        let actual: Vec<f64> =
-            slots.iter().map(|(m, c)| set.members[*m].1[*c] - now.set.members[*m].1[*c]).collect();
+        let actual: Vec<f64> = slots.iter().map(|(m, c)| set.members[*m].1[*c] - now.set.members[*m].1[*c]).collect();
         let moved = |(segment, linear): (&Segment, &crate::linear::SegmentLinear)| Segment {
             start: segment.start.retract(&linear.freedoms, &linear.start_step(&actual)),
             ..segment.clone()
@@ -203,7 +209,12 @@ fn iterate(
 }
 
 /// A model for each fitted coordinate, moved by its step.
-pub fn vary(plant: &Plant, set: &EffectSet, slots: &[(usize, usize)], sizes: &[f64]) -> Result<Vec<Variation>, DiagnoseError> {
+pub fn vary(
+    plant: &Plant,
+    set: &EffectSet,
+    slots: &[(usize, usize)],
+    sizes: &[f64],
+) -> Result<Vec<Variation>, DiagnoseError> {
     let vary_one = |((m, k), size): (&(usize, usize), &f64)| {
         let coordinate = &set.members[*m].0.coordinates[*k];
         let at = set.members[*m].1[*k];

@@ -107,8 +107,14 @@ impl Stage<'_> {
     }
 
     /// Linearises every segment about its start, with a column for each variation.
-    pub fn linearise(&self, built: &Built, segments: &[Segment], variations: &[Variation], steps: &mut Steps) -> Vec<SegmentLinear> {
-        let all = freedoms(&built.model);
+    pub fn linearise(
+        &self,
+        built: &Built,
+        segments: &[Segment],
+        variations: &[Variation],
+        steps: &mut Steps,
+    ) -> Vec<SegmentLinear> {
+        let all = freedoms(built);
         let first: Vec<Vec<f64>> = segments.iter().map(|s| steps.of(s.run, &all)).collect();
         let done: Vec<(SegmentLinear, Vec<f64>)> = segments
             .par_iter()
@@ -224,7 +230,8 @@ impl SegmentLinear {
     /// Step of the start that goes with a step of the parameters.
     pub fn start_step(&self, theta: &[f64]) -> Vec<f64> {
         let r = self.taken.ncols() - 1;
-        let of = |i: usize| -self.taken[(i, r)] - theta.iter().enumerate().map(|(k, d)| self.taken[(i, k)] * d).sum::<f64>();
+        let of =
+            |i: usize| -self.taken[(i, r)] - theta.iter().enumerate().map(|(k, d)| self.taken[(i, k)] * d).sum::<f64>();
         (0..self.taken.nrows()).map(of).collect()
     }
 }

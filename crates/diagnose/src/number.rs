@@ -13,7 +13,7 @@ pub(crate) fn digits(x: f64, count: i32) -> String {
     if x == 0.0 {
         return "0".to_owned();
     }
-    if !(1e-3..1e6).contains(&x.abs()) {
+    if !(1e-3..99_999.5).contains(&x.abs()) {
         let text = format!("{x:.*e}", (count - 1).max(0) as usize);
         let (mantissa, power) = text.split_once('e').unwrap_or((&text, "0"));
         let mantissa =
@@ -35,7 +35,7 @@ pub(crate) fn with_error(value: f64, std_err: f64) -> String {
         return short(value);
     }
     let largest = value.abs().max(std_err);
-    let power = if (1e-3..1e6).contains(&largest) { 0 } else { largest.log10().floor() as i32 };
+    let power = if (1e-2..1e5).contains(&largest) { 0 } else { largest.log10().floor() as i32 };
     let unit = 10_f64.powi(power);
     let (value, std_err) = (value / unit, std_err / unit);
     let places = (1 - std_err.log10().floor() as i32).clamp(0, 9) as usize;

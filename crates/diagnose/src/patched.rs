@@ -173,10 +173,19 @@ fn collect(value: &Spanned<DeValue<'_>>, is_path: bool, found: &mut Vec<(Range<u
     }
 }
 
+/// A path through links, also where its last parts do not exist yet.
+fn real(path: &Path) -> PathBuf {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    for there in path.ancestors() {
+        if let (Ok(real), Ok(rest)) = (there.canonicalize(), path.strip_prefix(there)) {
+            return if rest.as_os_str().is_empty() { real } else { real.join(rest) };
+        }
+    }
+    path
+}
+
 /// A file as seen from a folder.
 fn path_between(folder: &Path, file: &Path) -> String {
-    let real =
-        |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned());
     let (folder, file) = (real(folder), real(file));
     let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
     let named = folder.components().take(common).filter(|c| matches!(c, Component::Normal(_))).count();

@@ -152,8 +152,8 @@ impl Reading {
 pub fn read_motion(quantity: Quantity, world: &World) -> Value {
     let x = |value: f64| Value::Vector(Vec3::new(value, 0.0, 0.0));
     match quantity {
-        Quantity::JointPosition { q, .. } => x(world.state().q[q]),
-        Quantity::JointVelocity { v, .. } => x(world.state().v[v]),
+        Quantity::JointPosition { v, .. } => x(world.motor_side(v).0),
+        Quantity::JointVelocity { v, .. } => x(world.motor_side(v).1),
         Quantity::Position(p) => Value::Vector(world.link_frame(p.vehicle, p.link).pos),
         Quantity::Orientation(p) => Value::Rotation(world.link_frame(p.vehicle, p.link).to_pose().rotation),
         Quantity::LinearVelocity(p) => Value::Vector(world.link_twist(p.vehicle, p.link).lin),

@@ -53,7 +53,9 @@ pub fn observe(
     let events = events_in(tape, span, &faults);
     let mut world = start.world(built);
     let mut feed = Feed::new(tape, span.from);
+    hear_the_past(built, tape, span.from, &mut world);
     feed.apply(&mut world);
+    start.set_memory(&mut world);
     for (i, event) in &events {
         while feed.next_tick(tape) < event.time - SAME {
             advance_to(&mut world, feed.next_tick(tape), pace).map_err(|what| gone(tape, what))?;
@@ -70,6 +72,21 @@ pub fn observe(
         look(*i, event, &value);
     }
     Ok(())
+}
+
+/// Late actuators still follow commands from before the span.
+fn hear_the_past(built: &Built, tape: &Tape, from: f64, world: &mut World) {
+    if built.delay == 0.0 {
+        return;
+    }
+    let begin = from - 2.0 * built.delay;
+    let first = tape.ticks.partition_point(|t| *t < begin).saturating_sub(1);
+    let heard = |tick: &f64| {
+        Feed::new(tape, *tick).apply(world);
+        (*tick, world.state().commands.clone())
+    };
+    let past: Vec<_> = tape.ticks[first..].iter().take_while(|t| **t < from - SAME).map(heard).collect();
+    world.recall_commands(past.iter().map(|(time, commands)| (*time, commands.as_slice())));
 }
 
 fn read(_built: &Built, world: &World, quantity: Quantity) -> Value {
@@ -89,16 +106,15 @@ fn advance_to(world: &mut World, time: f64, pace: Pace) -> Result<(), sim::StepE
     let steps = (left / pace.step - 1e-6).ceil().max(1.0) as u32;
     let h = left / f64::from(steps);
     for _ in 0..steps {
-        { let _ = h; world.advance()?; }
+        world.advance_by(h)?;
     }
     Ok(())
 }
 
 /// The events of a span with their numbers, in the order of the instants they tell of: late sensors read what was.
 fn events_in(tape: &Tape, span: Span, faults: &[SensorFault]) -> Vec<(usize, Event)> {
-    let late = |(i, e): (usize, &Event)| {
-        (i, Event { time: (e.time - faults[e.reading as usize].delay).max(span.from), ..*e })
-    };
+    let late =
+        |(i, e): (usize, &Event)| (i, Event { time: (e.time - faults[e.reading as usize].delay).max(span.from), ..*e });
     let mut events: Vec<_> = tape.events[tape.range(span)].iter().enumerate().map(late).collect();
     if faults.iter().any(|f| f.delay != 0.0) {
         events.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));

@@ -34,16 +34,30 @@ pub struct Score {
 /// Root mean square (units of noise) that a column's step shall have on the pilot segments.
 const WISH: f64 = 0.3;
 /// Segments that tune the steps.
-const PILOTS: usize = 4;
+const PILOTS: usize = 3;
+/// Segments that a screen looks at.
+const SEGMENTS: usize = 24;
 
 /// One column, ready to be simulated.
 struct Probe {
     variation: Variation,
-    secant: bool,
 }
 
 /// Scores every screen point of every hypothesis beside a converged fit; best first.
+///
+/// Of very many segments an even selection speaks for all.
 pub fn screen(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -> Result<Vec<Score>, DiagnoseError> {
+    let every = fit.segments.len().div_ceil(SEGMENTS).max(1);
+    let whole = fit.segments.len();
+    let thinned =
+        Fit { segments: fit.segments.iter().skip(every / 2).step_by(every).cloned().collect(), ..fit.clone() };
+    let share = thinned.segments.len() as f64 / whole.max(1) as f64;
+    let mut scores = screen_all(stage, plant, &thinned, all)?;
+    scores.iter_mut().for_each(|s| s.score /= share);
+    Ok(scores)
+}
+
+fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -> Result<Vec<Score>, DiagnoseError> {
     let slots = fit.set.slots();
     let sizes: Vec<f64> = slots.iter().map(|(m, k)| active_size(fit, *m, *k)).collect();
     let active = vary(plant, &fit.set, &slots, &sizes)?;
@@ -87,13 +101,13 @@ fn probes_of(stage: &Stage<'_>, plant: &Plant, fit: &Fit, hypothesis: &Hypothesi
     let tuned = |c: &crate::hypothesis::Column| {
         let first = build(&c.base, &c.direction, c.step)?;
         if c.secant {
-            return Some(Probe { variation: first, secant: true });
+            return Some(Probe { variation: first });
         }
         let size = pilot_size(stage, fit, &first.built);
         let step = if size > 0.0 && size.is_finite() { c.step * (WISH / size).clamp(1e-6, 1e4) } else { c.step };
         let near = (0.1..3.0).contains(&(step / c.step));
         let variation = if near { first } else { build(&c.base, &c.direction, step)? };
-        Some(Probe { variation, secant: false })
+        Some(Probe { variation })
     };
     point.columns.iter().filter_map(tuned).collect()
 }
@@ -128,7 +142,7 @@ fn products_of(
     active: &[Variation],
     probes: &[Vec<Probe>],
 ) -> Vec<DMatrix<f64>> {
-    let base = freedoms(&fit.built.model);
+    let base = freedoms(&fit.built);
     let r = stage.residuals(&fit.built, segment);
     let mut steps = Steps::default();
     let s = stage.start_columns(&fit.built, segment, &r, &base, &mut steps);
@@ -148,7 +162,7 @@ fn products_of(
 fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: Option<&Probe>) -> Vec<DVector<f64>> {
     let Some(probe) = probe else { return Vec::new() };
     let built = &probe.variation.built;
-    let own: Vec<Freedom> = freedoms(&built.model).into_iter().filter(|f| !base.contains(f)).collect();
+    let own: Vec<Freedom> = freedoms(built).into_iter().filter(|f| !base.contains(f)).collect();
     if own.is_empty() {
         return Vec::new();
     }
@@ -170,7 +184,9 @@ fn score(
         return None;
     }
     let (a, b) = project_active(k, active, n);
-    let scale = DVector::from_fn(n, |i, _| if a[(i, i)] > 1e-12 * k[(active + i, active + i)].max(1e-30) { a[(i, i)].sqrt() } else { 0.0 });
+    let scale = DVector::from_fn(n, |i, _| {
+        if a[(i, i)] > 1e-12 * k[(active + i, active + i)].max(1e-30) { a[(i, i)].sqrt() } else { 0.0 }
+    });
     let rank = scale.iter().filter(|s| **s > 0.0).count();
     let inverse = pseudo_inverse(&a);
     let amplitudes = -(&inverse * &b);

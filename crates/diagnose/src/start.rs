@@ -4,7 +4,7 @@
 //! is free: turn of each base (rotation vector, W axes), place of its origin, spin, speed; joint coordinates; joint rates; memory of effects.
 
 use crate::plant::Built;
-use sim::{Base, Model, World};
+use sim::{Base, World};
 use spatial::{Pose, Twist, Vec3, exp_rotation};
 use std::sync::Arc;
 
@@ -67,14 +67,14 @@ impl Start {
             twists,
             q: state.q.clone(),
             v: state.v.clone(),
-            memory: vec![0.0; count_memory(model)],
+            memory: vec![0.0; count_memory(built)],
         }
     }
 
     /// The same for a model with other memory: slots that it does not know begin at rest.
     pub fn fitted_to(&self, built: &Built) -> Self {
         let mut start = self.clone();
-        start.memory.resize(count_memory(&built.model), 0.0);
+        start.memory.resize(count_memory(built), 0.0);
         let nominal = (&built.start.q, &built.start.v);
         let (known_q, known_v) = (start.q.len().min(nominal.0.len()), start.v.len().min(nominal.1.len()));
         start.q.truncate(known_q);
@@ -88,13 +88,20 @@ impl Start {
     pub fn world(&self, built: &Built) -> World {
         let mut state = built.start.clone();
         state.time = self.time;
-        state.steps = (self.time / built.model.step).round() as u64;
         state.bases.clone_from(&self.bases);
         state.q.clone_from(&self.q);
         state.v.clone_from(&self.v);
         let mut world = World::new(Arc::clone(&built.model), state);
         world.set_base_twists(&self.twists);
         world
+    }
+
+    /// Sets the memory of effects: its rest under the world's present commands, and the deviation from it.
+    pub fn set_memory(&self, world: &mut World) {
+        world.settle_effects();
+        if self.memory.iter().any(|m| *m != 0.0) {
+            world.state_mut().effects.iter_mut().zip(&self.memory).for_each(|(e, m)| *e += m);
+        }
     }
 
     /// Moves one coordinate.
@@ -125,12 +132,13 @@ impl Start {
     }
 }
 
-fn count_memory(_model: &Model) -> usize {
-    0
+fn count_memory(built: &Built) -> usize {
+    built.start.effects.len()
 }
 
 /// The coordinates of a start that are free in a model.
-pub fn freedoms(model: &Model) -> Vec<Freedom> {
+pub fn freedoms(built: &Built) -> Vec<Freedom> {
+    let model = &built.model;
     let mut all = Vec::new();
     for (b, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| v.base != Base::Fixed) {
         let mask = vehicle.base.mask();
@@ -143,6 +151,6 @@ pub fn freedoms(model: &Model) -> Vec<Freedom> {
     let scalar = || model.coordinates.iter().enumerate().filter(|(_, c)| c.is_scalar);
     all.extend(scalar().map(|(_, c)| Freedom::Joint(c.q_index)));
     all.extend(scalar().map(|(i, _)| Freedom::Rate(i)));
-    all.extend((0..count_memory(model)).map(Freedom::Memory));
+    all.extend((0..count_memory(built)).map(Freedom::Memory));
     all
 }

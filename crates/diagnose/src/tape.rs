@@ -68,9 +68,14 @@ impl Tape {
             if channel.starts_with("drive.") {
                 continue;
             }
-            if channel.ends_with(".effort_command") || (channel.starts_with("actuator.") && channel.ends_with(".command")) {
+            if channel.ends_with(".effort_command")
+                || (channel.starts_with("actuator.") && channel.ends_with(".command"))
+            {
                 let (actuator, unit) = built.actuator(channel).ok_or_else(|| {
-                    fault(channel, "the scenario has no actuator of that name; name it as the recording does, or drop the column")
+                    fault(
+                        channel,
+                        "the scenario has no actuator of that name; name it as the recording does, or drop the column",
+                    )
                 })?;
                 let efforts = series.values.iter().map(|v| v * unit).collect();
                 commands.push(CommandTape { actuator, times: series.times.clone(), efforts });
@@ -82,7 +87,10 @@ impl Tape {
         let mut readings = Vec::new();
         for (prefix, group) in &groups {
             let Some(quantity) = built.quantity(prefix) else {
-                return Err(fault(prefix, "nothing in the scenario is measured by it; check joint, body and sensor names"));
+                return Err(fault(
+                    prefix,
+                    "nothing in the scenario is measured by it; check joint, body and sensor names",
+                ));
             };
             readings.extend(readings_of(set, prefix, quantity, group));
         }

@@ -32,16 +32,61 @@ pub fn run(scenario: Scenario, set: &RecordingSet) -> Result<(), DiagnoseError> 
     println!("{} segments, {:.1} s", segments.len(), t0.elapsed().as_secs_f64());
     let (cost, count) = stage.cost(&built, &segments);
     println!("guess rms {:.3}  {:.2} s", (cost / count as f64).sqrt(), t0.elapsed().as_secs_f64());
-    per_reading(&stage, &Fit { set: EffectSet::default(), built: built.clone(), segments: segments.clone(), cost, count, freedom: 0, covariance: nalgebra::DMatrix::zeros(0, 0), converged: false, iterations: 0 });
+    per_reading(
+        &stage,
+        &Fit {
+            set: EffectSet::default(),
+            built: built.clone(),
+            segments: segments.clone(),
+            cost,
+            count,
+            freedom: 0,
+            covariance: nalgebra::DMatrix::zeros(0, 0),
+            converged: false,
+            iterations: 0,
+        },
+    );
     let nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort { iterations: 6, share: 1e-4 })?;
     show("nominal", &nominal, t0);
-    let facts = |f: &Fit| hypotheses(&Facts::new(&f.built, &tapes));
+    let w = window.unwrap_or(tapes[0].span.1);
+    let located =
+        crate::locate::locate(&stage, &plant, &nominal, crate::locate::places(&Facts::new(&nominal.built, &tapes), w))?;
+    for p in located.ranked() {
+        println!(
+            "  located {:30} S {:12.1} rank {} share {:.3}",
+            located.places[p].name,
+            located.score(p),
+            located.rank(p),
+            located.share(p)
+        );
+    }
+    println!("{:.1} s", t0.elapsed().as_secs_f64());
+    let keep: Vec<String> = located
+        .ranked()
+        .into_iter()
+        .filter(|p| located.share(*p) > 0.2 * located.share(located.ranked()[0]))
+        .map(|p| located.places[p].name.clone())
+        .collect();
+    let facts = |f: &Fit| {
+        let mut h = hypotheses(&Facts::new(&f.built, &tapes));
+        h.retain(|h| !h.place.starts_with("joint:") || keep.contains(&h.place));
+        h
+    };
     let limits = Limits { effects: 3, refits: 4, sigmas: 4.0 };
     let (found, attempts) = search(&stage, &plant, nominal, &facts, &limits)?;
     for a in attempts.iter().filter(|a| a.fall.is_some() || a.share > 0.02) {
         println!(
             "  {} {:28} {:24} S {:11.1} share {:.4} fall {:?} gain {:?} p {} {} {:?}",
-            a.round, a.name, a.place, a.score, a.share, a.fall, a.gain, a.parameters, if a.kept { "KEPT" } else { "" }, a.found
+            a.round,
+            a.name,
+            a.place,
+            a.score,
+            a.share,
+            a.fall,
+            a.gain,
+            a.parameters,
+            if a.kept { "KEPT" } else { "" },
+            a.found
         );
     }
     show("found", &found, t0);
@@ -51,7 +96,13 @@ pub fn run(scenario: Scenario, set: &RecordingSet) -> Result<(), DiagnoseError> 
 fn show(what: &str, f: &Fit, t0: std::time::Instant) {
     println!(
         "{what}: rms {:.4} excess {:.0} ({:.1} sd) it {} conv {} N {}  {:.2} s",
-        f.rms(), f.excess(), f.excess() / f.spread(), f.iterations, f.converged, f.count, t0.elapsed().as_secs_f64()
+        f.rms(),
+        f.excess(),
+        f.excess() / f.spread(),
+        f.iterations,
+        f.converged,
+        f.count,
+        t0.elapsed().as_secs_f64()
     );
     for (h, x) in &f.set.members {
         println!("   {} {:?}", h.title(), h.decode(x));
@@ -71,7 +122,16 @@ pub fn per_reading(stage: &Stage<'_>, f: &Fit) {
                     at.extend(r.iter().skip(o).take(reading.width()));
                 }
             }
-            println!("   {} {} sigma {:.3e} n {} rms {:.3} first {:?} last {:?}", tape.file, reading.channel, reading.sigma, at.len(), (at.iter().map(|x| x * x).sum::<f64>() / at.len() as f64).sqrt(), &at[..6.min(at.len())], &at[at.len().saturating_sub(3)..]);
+            println!(
+                "   {} {} sigma {:.3e} n {} rms {:.3} first {:?} last {:?}",
+                tape.file,
+                reading.channel,
+                reading.sigma,
+                at.len(),
+                (at.iter().map(|x| x * x).sum::<f64>() / at.len() as f64).sqrt(),
+                &at[..6.min(at.len())],
+                &at[at.len().saturating_sub(3)..]
+            );
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The verdict in one paragraph of plain words, from the data.
 
-use crate::diagnosis::{Diagnosis, Found, Located, ParamValue, StdErr, Verdict};
+use crate::diagnosis::{Diagnosis, Found, Located, ParamValue, Rival, StdErr, Verdict};
 use crate::evidence::Evidence;
 use crate::number::{noise, percent, with_error};
 use crate::vocabulary::{plain_name, unit};
@@ -170,13 +170,13 @@ fn improvement(diagnosis: &Diagnosis) -> Option<String> {
 /// What the data do not decide.
 fn doubts(diagnosis: &Diagnosis) -> Option<String> {
     let near = |found: &Found| {
-        let rivals = found.rivals.iter().filter(|r| r.score_gap < UNDECIDED);
-        let rivals: Vec<String> =
-            rivals.map(|r| format!("{} at {}", plain_name(&r.name), place_words(&r.place))).collect();
-        (!rivals.is_empty()).then(|| {
-            let or = rivals.join(" or ");
-            format!("The data do not decide between {} and {or}.", plain_name(&found.name))
-        })
+        let one = |rival: &Rival| match crate::score::same_place(&rival.place, &found.place) {
+            true => plain_name(&rival.name).to_owned(),
+            false => format!("{} at {}", plain_name(&rival.name), place_words(&rival.place)),
+        };
+        let rivals: Vec<String> = found.rivals.iter().filter(|r| r.score_gap < UNDECIDED).map(one).collect();
+        let what = plain_name(&found.name);
+        (!rivals.is_empty()).then(|| format!("The data do not decide between {what} and {}.", rivals.join(" or ")))
     };
     let said: Vec<String> = diagnosis.effects.iter().filter_map(near).collect();
     if !said.is_empty() {
@@ -188,7 +188,7 @@ fn doubts(diagnosis: &Diagnosis) -> Option<String> {
         "The nearest other explanation, {} at {}, is worse by {} in the information criterion (10 is decisive).",
         plain_name(&nearest.name),
         place_words(&nearest.place),
-        crate::number::digits(nearest.score_gap, 2)
+        crate::number::digits(nearest.score_gap, 3)
     ))
 }
 

@@ -5,6 +5,7 @@
 mod aba;
 mod description;
 mod dynamics;
+mod inertial;
 mod kinematics;
 mod mesh;
 mod tree;

@@ -18,7 +18,7 @@ pub mod consistency;
 mod csv_file;
 mod error;
 mod folder;
-//pub mod inspect;
+pub mod inspect;
 mod log;
 mod mechanisms;
 mod mesh;

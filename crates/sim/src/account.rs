@@ -1,6 +1,7 @@
 //! The books: momentum recomputed from the links, and energy by where it is.
 //!
-//! The audit never reads a conserved state: it sums over the *links* of the files, with their masses, poses and twists.
+//! The audit never reads a conserved state: it sums over the *links*, with their masses, poses and twists, and over the parts
+//! that effects put inside them.
 //!
 //!   p = Σ m_l v_l,    L = Σ (x_l × m_l v_l + R I R^T ω_l)      about W's origin
 //!   drift = |Δ − external impulse| / largest of Σ m‖v‖ (linear), Σ ‖L_link‖ (angular), in the frame of the centre of mass
@@ -83,6 +84,7 @@ fn calc_link_sums(world: &World) -> LinkSums {
         first += m * x;
         total += Wrench::new(momentum.moment + x.cross(&momentum.force), momentum.force);
     });
+    total = (0..world.model().vehicles.len()).fold(total, |sum, i| sum + world.carried_momentum(i));
     if links <= 1 {
         return LinkSums { total, speed: total.force.norm(), spin: total.moment.norm() };
     }
@@ -121,7 +123,7 @@ pub struct Energy {
     pub elastic: f64,
     /// Stored in mechanisms.
     pub mechanism: f64,
-    /// Held by effects: in their springs, and in rotors behind a gear that yields.
+    /// Held by effects: in their springs, in rotors behind a gear that yields, and in the motion of parts inside bodies.
     pub effect: f64,
 }
 
@@ -139,7 +141,7 @@ impl Energy {
         }
         let elastic = world.touches().map(|t| calc_elastic(world, &t)).sum();
         let mechanism = world.mechanisms().map(|m| m.stored).sum();
-        let effect = effect::calc_energy(model, world.state());
+        let effect = effect::calc_energy(model, world.state(), world.all_kinematics());
         Self { kinetic, potential, elastic, mechanism, effect }
     }
 }

@@ -48,7 +48,10 @@ mod world;
 pub use account::{Energy, MomentumAudit};
 pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
 pub use drive::{Drive, DriveAxis, DrivePath, Motion};
-pub use effect::{DryLevel, Effect, EffectKind, JointEffect, JointLaw, LineEffect, LineLaw, Series};
+pub use effect::{
+    Appendage, Axes, BodyAction, BodyEffect, BodyLaw, BodyMotion, BodyPlace, DryLevel, Effect, EffectKind, JointEffect,
+    JointLaw, LineEffect, LineLaw, Load, MemorySlot, Series, Slosh, Sphere, memory_layout,
+};
 pub use environment::Environment;
 pub use error::{ModelError, StepError};
 pub use mechanism::{

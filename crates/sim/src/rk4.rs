@@ -274,7 +274,7 @@ fn eval_touch(model: &Model, touch: &mut Touch) -> Option<BrushRate> {
 /// Finds the touching points of the present state and evaluates their laws there; nothing advances.
 pub(crate) fn refresh_touches(model: &Model, state: &State, ws: &mut Workspace) {
     ws.frames_start.copy_from_slice(&ws.frames);
-    find_touches(model, state, ws, model.step);
+    find_touches(model, state, ws, ws.step);
     for touch in &mut ws.touches {
         eval_touch(model, touch);
     }

@@ -22,8 +22,9 @@ pub struct State {
     pub q: Vec<f64>,
     /// Joint rates of all vehicles.
     pub v: Vec<f64>,
-    /// Per vehicle: angular momentum about W's origin (moment slot, N·m·s), linear momentum (force slot, N·s). Components
-    /// that the base's guide holds are not kept. Of a driven vehicle: what all others have given it since the start.
+    /// Per vehicle: angular momentum about W's origin (moment slot, N·m·s), linear momentum (force slot, N·s), of its bodies
+    /// and of the parts that effects put inside them. Components that the base's guide holds are not kept. Of a driven
+    /// vehicle: what all others have given it since the start.
     pub momentum: Vec<Wrench>,
     /// Touching points' bristles, sorted by pair and feature.
     pub bristles: Vec<ContactMemory>,
@@ -109,6 +110,9 @@ pub struct Account {
     /// Work of effects on joints, J (negative: stored or dissipated); that on bodies is with the external work.
     #[serde(default)]
     pub effect_work: f64,
+    /// What the dampers of parts inside bodies have dissipated, J.
+    #[serde(default)]
+    pub effect_loss: f64,
 }
 
 /// Work counters: they show numeric drift without a clock.
@@ -191,5 +195,6 @@ impl Account {
         self.mechanism_loss += other.mechanism_loss * k;
         self.drive_work += other.drive_work * k;
         self.effect_work += other.effect_work * k;
+        self.effect_loss += other.effect_loss * k;
     }
 }

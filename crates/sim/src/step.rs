@@ -47,6 +47,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     begin(model, state, ws);
     drive::begin(model, state, ws, h);
     if scheme == Scheme::ImplicitMidpoint {
+        effect::drift_to_midpoint(model, state, ws, 0.5 * h);
         drift_to_midpoint(model, state, ws, 0.5 * h);
         state.time += 0.5 * h;
     }
@@ -81,8 +82,8 @@ fn place_centres(model: &Model, state: &mut State, ws: &mut Workspace, scheme: S
     for (i, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| !v.base.is_held()) {
         let start = &ws.momentum_start[i];
         let mean = match scheme {
-            Scheme::ImplicitMidpoint => 0.5 * (start + state.momentum[i].force),
-            _ => state.momentum[i].force,
+            Scheme::ImplicitMidpoint => 0.5 * (start + own_momentum(model, state, ws, i)),
+            _ => own_momentum(model, state, ws, i),
         };
         let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
         let kin = &mut ws.kin[i];
@@ -97,6 +98,12 @@ fn place_centres(model: &Model, state: &mut State, ws: &mut Workspace, scheme: S
     }
 }
 
+/// Linear momentum of a vehicle's bodies, without the parts that effects put inside them.
+fn own_momentum(model: &Model, state: &State, ws: &Workspace, vehicle: usize) -> Vec3 {
+    let total = state.momentum[vehicle].force;
+    if ws.parts.has_parts { total - effect::calc_carried_linear(model, state, vehicle) } else { total }
+}
+
 /// Mass of a vehicle and its first moment about the anchor.
 fn calc_first_moment(kin: &Kinematics) -> (f64, Vec3) {
     kin.inertia.iter().fold((0.0, Vec3::zeros()), |(mass, moment), i| (mass + i.mass, moment + i.mc))
@@ -109,7 +116,7 @@ pub(crate) fn begin(model: &Model, state: &State, ws: &mut Workspace) {
     ws.queries_start = ws.detector.narrow_count();
     for i in 0..model.vehicles.len() {
         ws.base_start[i] = ws.kin[i].vel[0];
-        ws.momentum_start[i] = state.momentum[i].force;
+        ws.momentum_start[i] = own_momentum(model, state, ws, i);
         let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
         ws.centre_start[i] = ws.kin[i].anchor + first_moment / mass;
     }
@@ -162,6 +169,9 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
         let bodies = vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len();
         ws.dynamics[i].calc_body_wrenches(&vehicle.tree, &ws.kin[i], &motion, &ws.external[bodies.clone()]);
         ws.bias[bodies].copy_from_slice(&ws.dynamics[i].wrench);
+    }
+    if ws.parts.has_parts {
+        ws.bias.iter_mut().zip(&ws.parts.internal).for_each(|(bias, internal)| *bias -= *internal);
     }
 }
 
@@ -255,7 +265,7 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
         must_factor = !converged;
         if first_midpoint_pass {
             recalc_bias_at_midpoint(model, state, ws);
-            must_factor |= !ws.touches.is_empty() || !ws.couplings.is_empty();
+            must_factor |= !ws.touches.is_empty() || !ws.couplings.is_empty() || !model.effects.list.is_empty();
         }
         if converged && !first_midpoint_pass {
             break;
@@ -274,6 +284,9 @@ fn recalc_bias_at_midpoint(model: &Model, state: &State, ws: &mut Workspace) {
         }
         let (kin, range) = (&mut ws.kin[i], vehicle.v_range());
         kin.update_velocities(&vehicle.tree, &(base + gain * 0.5), &ws.v_mid[range]);
+    }
+    if effect::depends_on_twists(model) {
+        calc_external(model, state, ws);
     }
     calc_bias(model, state, ws, true);
     for i in 0..ws.touches.len() {
@@ -383,6 +396,7 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         state.account.passive_joint_work += (force.effort - force.through - force.by_effects) * moved;
         state.account.effect_work += by_effects;
     }
+    effect::add_impulses(model, state, ws, h);
     for (body, &(vehicle, local)) in model.owners.iter().enumerate() {
         let external = ws.external[body];
         if external == Wrench::default() {

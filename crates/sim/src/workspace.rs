@@ -2,6 +2,7 @@
 
 use crate::actuator::{CoordinateForce, CoordinatePoint};
 use crate::contacts::Touch;
+use crate::effect::calc_carried;
 use crate::model::{Base, Model, Vehicle};
 use crate::state::State;
 use contact::{ContactPoint, Detector};
@@ -56,6 +57,7 @@ pub(crate) struct Workspace {
     pub coordinate_lines: Vec<(f64, f64)>,
     pub islands: crate::solve::Islands,
     pub memories: Vec<crate::state::ContactMemory>,
+    pub parts: crate::effect::Parts,
     pub rk: crate::rk4::Stages,
     pub backup: State,
 }
@@ -102,6 +104,7 @@ impl Workspace {
             coordinate_lines: vec![(0.0, 0.0); nv],
             islands: crate::solve::Islands::new(model),
             memories: Vec::new(),
+            parts: crate::effect::Parts::new(model),
             rk: crate::rk4::Stages::new(model),
             backup: State::new(model),
         }
@@ -124,7 +127,11 @@ impl Workspace {
             kin.update_velocities(&vehicle.tree, &Twist::default(), &state.v[vehicle.v_range()]);
             let base = match vehicle.base {
                 Base::Driven(k) => model.drives[k].calc_motion(state.time).twist,
-                _ => calc_base_twist(vehicle, kin, &state.momentum[i]),
+                _ => {
+                    let carried =
+                        if self.parts.has_parts { calc_carried(model, state, i, kin) } else { Wrench::default() };
+                    calc_base_twist(vehicle, kin, &state.momentum[i], &carried)
+                }
             };
             for twist in &mut kin.vel {
                 *twist += base;
@@ -147,8 +154,9 @@ impl Workspace {
     }
 }
 
-/// Base twist (about the anchor) of a vehicle whose kinematics hold the twists with the base held.
-fn calc_base_twist(vehicle: &Vehicle, kin: &Kinematics, momentum: &Wrench) -> Twist {
+/// Base twist (about the anchor) of a vehicle whose kinematics hold the twists with the base held; `carried` is what the
+/// parts inside its bodies have of the momentum, about the anchor.
+fn calc_base_twist(vehicle: &Vehicle, kin: &Kinematics, momentum: &Wrench, carried: &Wrench) -> Twist {
     if vehicle.base == Base::Fixed {
         return Twist::default();
     }
@@ -161,7 +169,7 @@ fn calc_base_twist(vehicle: &Vehicle, kin: &Kinematics, momentum: &Wrench) -> Tw
     let locked = calc_locked_inertia(kin);
     let about_anchor = Wrench::new(momentum.moment - kin.anchor.cross(&momentum.force), momentum.force);
     let relative = if vehicle.tree.nv == 0 { Wrench::default() } else { calc_momentum(kin) };
-    let h = about_anchor - relative;
+    let h = about_anchor - relative - *carried;
     match vehicle.base {
         Base::Free => locked.twist_of(&h).unwrap_or(Twist::new(Vec3::repeat(f64::NAN), Vec3::repeat(f64::NAN))),
         _ => solve_masked(&SpatialMatrix::from(&locked), &h, &vehicle.base.mask()),

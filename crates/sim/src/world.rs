@@ -61,9 +61,15 @@ impl World {
         state.mechanisms.extend(model.mechanisms.iter().skip(known).map(|m| m.kind.start()));
         // Likewise of effects.
         state.effects.resize(model.effects.n_memory(), 0.0);
+        let is_blank = !state.is_settled && effect::is_blank(&model, &state);
         let ws = Workspace::new(&model);
         let mut world = Self { model, state, ws, is_fresh: false };
         world.refresh();
+        if is_blank && world.ws.parts.has_parts {
+            effect::rest_parts(&world.model, &mut world.state, &world.ws);
+            world.is_fresh = false;
+            world.refresh();
+        }
         world
     }
 
@@ -104,7 +110,8 @@ impl World {
         }
     }
 
-    /// Sets base twists (about each base's origin, W axes) at the present poses and rates: writes the momentum.
+    /// Sets base twists (about each base's origin, W axes) at the present poses and rates: writes the momentum. What
+    /// effects put inside the bodies comes to rest with them; [`World::set_effect_memory`] moves it.
     pub fn set_base_twists(&mut self, twists: &[Twist]) {
         let now = self.state.time;
         drive::place(&self.model, &mut self.state, now);
@@ -113,6 +120,9 @@ impl World {
             let kin = &mut self.ws.kin[i];
             kin.update_velocities(&vehicle.tree, &twists[i], &self.state.v[vehicle.v_range()]);
             self.state.momentum[i] = calc_world_momentum(vehicle, kin);
+        }
+        if self.ws.parts.has_parts {
+            effect::rest_parts(&self.model, &mut self.state, &self.ws);
         }
         self.is_fresh = false;
         self.refresh();
@@ -155,9 +165,37 @@ impl World {
         }
     }
 
+    /// The effects' memory in the coordinates of [`crate::memory_layout`], at the last refreshed state.
+    pub fn effect_memory(&self) -> Vec<f64> {
+        effect::calc_relative(&self.model, &self.state, &self.ws)
+    }
+
+    /// Sets the effects' memory from the coordinates of [`crate::memory_layout`]; missing ones are zero. Every body keeps
+    /// its twist, and the momentum becomes what belongs to it.
+    pub fn set_effect_memory(&mut self, relative: &[f64]) {
+        self.refresh();
+        effect::set_relative(&self.model, &mut self.state, &self.ws, relative);
+        self.is_fresh = false;
+        self.refresh();
+    }
+
     /// When the next command that an effect delays begins to act, s; none where none is on its way.
     pub fn next_switch(&self) -> Option<f64> {
         effect::next_switch(&self.state)
+    }
+
+    /// Tells what was commanded before the present time, in order of time: commands that an effect delays act from now on
+    /// as if the world had run through them. The present commands are left as they are.
+    pub fn recall_commands<'a>(&mut self, past: impl IntoIterator<Item = (f64, &'a [Command])>) {
+        let (now, present) = (self.state.time, self.state.commands.clone());
+        self.state.acting.clear();
+        self.state.pending.clear();
+        for (time, commands) in past {
+            self.state.time = time;
+            self.state.commands.copy_from_slice(commands);
+            effect::accept(&self.model, &mut self.state);
+        }
+        (self.state.time, self.state.commands) = (now, present);
     }
 
     /// Sets the effects' memory that depends on commands to rest under the present ones: a gear that yields carries the
@@ -203,6 +241,17 @@ impl World {
             }
         }
         Ok(())
+    }
+
+    /// Momentum of the parts that effects put inside a vehicle's bodies, about W's origin, W axes.
+    pub(crate) fn carried_momentum(&self, vehicle: usize) -> Wrench {
+        let kin = &self.ws.kin[vehicle];
+        effect::calc_carried(&self.model, &self.state, vehicle, kin).about(&-kin.anchor)
+    }
+
+    /// Kinematics of all vehicles at the present state.
+    pub(crate) fn all_kinematics(&self) -> &[Kinematics] {
+        &self.ws.kin
     }
 
     /// Kinematics of a vehicle at the present state.

@@ -105,11 +105,11 @@ fn add_internal(body: &BodyFact, place: &str, facts: &Facts, all: &mut Vec<Hypot
     let size = body.inertia.trace() / 3.0;
     let damper = vec![Coordinate::level("i_damper", 0.0), Coordinate::log("c", 0.01, [1e-5, 10.0])];
     let rates = log_grid(1e-3, 1.0, 1.0);
-    all.push(
-        hypothesis("internal-dissipation", place, damper)
-            .encoded(Encoding::RateOfInertia)
-            .screened_on(1, &rates, &[(vec![(0, 1.0)], 1e-3 * size)]),
-    );
+    all.push(hypothesis("internal-dissipation", place, damper).encoded(Encoding::RateOfInertia).screened_on(
+        1,
+        &rates,
+        &[(vec![(0, 1.0)], 1e-3 * size)],
+    ));
     let tide = vec![Coordinate::level("mean_motion", 0.0)];
     all.push(hypothesis("gravity-gradient", place, tide).encoded(Encoding::Squared).screened(&[(0, 1e-7)]));
     let grid = log_grid((6.0 / facts.duration).max(0.02), 2.0, 1.0);
@@ -186,7 +186,8 @@ pub(super) fn add_world(facts: &Facts, all: &mut Vec<Hypothesis>) {
     for body in facts.bodies.iter().filter(|b| b.is_base) {
         (0..3).for_each(|k| mask[k] |= body.mask[3 + k]);
     }
-    let columns: Vec<(usize, f64)> = (0..3).filter(|k| mask[*k] || !facts.joints.is_empty()).map(|k| (k, 1e-6)).collect();
+    let columns: Vec<(usize, f64)> =
+        (0..3).filter(|k| mask[*k] || !facts.joints.is_empty()).map(|k| (k, 1e-6)).collect();
     if !columns.is_empty() {
         let vector = (0..3).map(|k| Coordinate::free(VECTOR[k], 0.0)).collect();
         all.push(hypothesis("tilt", "world", vector).screened(&columns));

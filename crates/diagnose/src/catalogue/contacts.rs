@@ -73,16 +73,18 @@ fn add_friction(place: &str, [mu, k_b, c_b]: [f64; 3], all: &mut Vec<Hypothesis>
         Coordinate::free("mu_2", 0.0),
         Coordinate::free("angle", 0.0),
     ];
-    all.push(
-        hypothesis("friction-anisotropy", place, ellipse)
-            .encoded(Encoding::Ellipse)
-            .screened(&[(0, 1e-5), (1, 1e-5), (2, 1e-5)]),
-    );
+    all.push(hypothesis("friction-anisotropy", place, ellipse).encoded(Encoding::Ellipse).screened(&[
+        (0, 1e-5),
+        (1, 1e-5),
+        (2, 1e-5),
+    ]));
     let dwell = vec![
         Coordinate { bounds: [1e-3, 5.0], ..Coordinate::level("mu_s_inf", mu) },
         Coordinate::log("time_constant", 0.3, [1e-3, 100.0]),
     ];
-    all.push(
-        hypothesis("friction-dwell-time", place, dwell).screened_on(1, &log_grid(0.02, 5.12, 1.0), &[(vec![(0, 1.0)], 1e-5)]),
-    );
+    all.push(hypothesis("friction-dwell-time", place, dwell).screened_on(
+        1,
+        &log_grid(0.02, 5.12, 1.0),
+        &[(vec![(0, 1.0)], 1e-5)],
+    ));
 }

@@ -12,11 +12,8 @@ pub(super) fn add(joint: &JointFact, facts: &Facts, all: &mut Vec<Hypothesis>) {
     let place = place.as_str();
     all.push(hypothesis("joint-viscous-friction", place, vec![Coordinate::level("b", 0.0)]).screened(&[(0, SMALL)]));
     all.push(hypothesis("joint-coulomb-friction", place, vec![Coordinate::level("c", 0.0)]).screened(&[(0, SMALL)]));
-    let stribeck = vec![
-        Coordinate::level("c", 0.0),
-        Coordinate::level("s", 0.0),
-        Coordinate::log("v_s", 0.05, [1e-3, 3.0]),
-    ];
+    let stribeck =
+        vec![Coordinate::level("c", 0.0), Coordinate::level("s", 0.0), Coordinate::log("v_s", 0.05, [1e-3, 3.0])];
     let both = (vec![(0, 1.0), (1, 1.0)], SMALL);
     let above = (vec![(1, 1.0)], SMALL);
     all.push(hypothesis("joint-stribeck-friction", place, stribeck).screened_on(2, &[0.02, 0.08, 0.3], &[both, above]));
@@ -25,7 +22,9 @@ pub(super) fn add(joint: &JointFact, facts: &Facts, all: &mut Vec<Hypothesis>) {
     add_springs(joint, place, all);
     add_periodic(place, facts, all);
     all.push(
-        hypothesis("joint-armature", place, vec![Coordinate::free("i_rotor", 0.0)]).screened(&[(0, 1e-5)]).nominal_number(),
+        hypothesis("joint-armature", place, vec![Coordinate::free("i_rotor", 0.0)])
+            .screened(&[(0, 1e-5)])
+            .nominal_number(),
     );
 }
 
@@ -74,7 +73,5 @@ fn add_periodic(place: &str, facts: &Facts, all: &mut Vec<Hypothesis>) {
         Coordinate::log("frequency", 1.0, [1.0 / facts.duration.max(1.0), 200.0]),
     ];
     let grid = log_grid(0.5, 32.0, 1.0);
-    all.push(
-        hypothesis("periodic-disturbance", place, wave).encoded(Encoding::Phasor).screened_on(2, &grid, &columns),
-    );
+    all.push(hypothesis("periodic-disturbance", place, wave).encoded(Encoding::Phasor).screened_on(2, &grid, &columns));
 }

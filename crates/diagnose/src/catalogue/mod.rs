@@ -70,7 +70,12 @@ impl Hypothesis {
 
     /// A screen point of secants: the change of the residual from nominal to each of these coordinates.
     fn screened_at(mut self, label: &str, points: &[Vec<f64>]) -> Self {
-        let secant = |point: &Vec<f64>| Column { base: vec![0.0; point.len()], direction: point.clone(), step: 1.0, secant: true };
+        let secant = |point: &Vec<f64>| Column {
+            base: vec![0.0; point.len()],
+            direction: point.clone(),
+            step: 1.0,
+            secant: true,
+        };
         self.screens.push(ScreenPoint { label: label.to_owned(), columns: points.iter().map(secant).collect() });
         self
     }

@@ -48,14 +48,20 @@ fn a_patched_scenario_keeps_its_text_says_its_errors_and_loads() {
 }
 
 #[test]
-fn without_an_effect_that_the_model_must_know_it_runs_from_another_folder() {
+fn a_patched_scenario_builds_and_runs_from_another_folder_with_the_effect_in_it() {
     let dir = tempfile::tempdir().unwrap();
-    let bare = Diagnosis { effects: Vec::new(), ..diagnosis() };
-    let file = dir.path().join(FILE);
-    std::fs::write(&file, patched_toml(&scenario(&[]), &bare, dir.path()).unwrap()).unwrap();
-    let mut mission = scenario::build(&scenario::load(&file, &[]).unwrap()).unwrap();
-    let ended = mission.world.run(20, &*mission.controller, &mut []);
-    assert!(mission.world.state().time > 0.0, "{ended:?}");
+    let mut one = diagnosis();
+    one.effects.truncate(1);
+    let end = |diagnosis: &Diagnosis| {
+        let file = dir.path().join(FILE);
+        std::fs::write(&file, patched_toml(&scenario(&[]), diagnosis, dir.path()).unwrap()).unwrap();
+        let mut mission = scenario::build(&scenario::load(&file, &[]).unwrap()).unwrap();
+        mission.world.run(50, &*mission.controller, &mut []).unwrap();
+        mission.world.state().clone()
+    };
+    let (nominal, patched) = (end(&Diagnosis { effects: Vec::new(), ..diagnosis() }), end(&one));
+    assert!(nominal.time > 0.0 && nominal.time == patched.time);
+    assert_ne!(format!("{nominal:?}"), format!("{patched:?}"), "the friction that was found acts");
 }
 
 #[test]
@@ -71,6 +77,30 @@ fn overrides_are_written_out_and_an_effect_that_was_there_is_replaced() {
     assert_eq!(twice.effects.len(), 2);
     let friction = twice.effects.iter().find(|e| e.name == "joint-coulomb-friction").unwrap();
     assert_eq!(friction.params["c"], ParamValue::Number(0.5));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_behind_a_link_that_is_not_there_yet_sees_the_file() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::create_dir_all(dir.path().join("deep/er")).unwrap();
+    std::os::unix::fs::symlink(dir.path().join("deep/er"), dir.path().join("link")).unwrap();
+    std::fs::write(dir.path().join("x.urdf"), "").unwrap();
+    assert_eq!(path_between(&dir.path().join("link/new"), &dir.path().join("x.urdf")), "../../../x.urdf");
+}
+
+#[test]
+fn the_files_of_a_diagnosis_are_written_for_the_place_where_they_will_stand() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("out/deep");
+    let folder = record::OutputFolder::create(&target).unwrap();
+    crate::write_diagnosis(&folder, &scenario(&[]), &diagnosis(), &crate::Evidence::default()).unwrap();
+    let stands = folder.finish(&serde_json::Map::new()).unwrap();
+    for file in [crate::DIAGNOSIS_FILE, crate::report::FILE] {
+        assert!(stands.join(file).is_file(), "{file}");
+    }
+    let patched = scenario::load(&stands.join(FILE), &[]).unwrap();
+    assert!(patched.resolve(&patched.vehicles[0].urdf).is_file());
 }
 
 #[test]

@@ -31,7 +31,10 @@ pub(super) fn section(diagnosis: &Diagnosis, evidence: &Evidence) -> String {
     if corrected {
         entries.push(("corrected", "corrected model"));
     }
-    entries.extend([("noise", "± 2 σ of the sensor"), ("located", "where the mismatch was located")]);
+    entries.push(("noise", "± 2 σ of the sensor"));
+    if evidence.curves.iter().any(|curve| span(diagnosis, curve).is_some()) {
+        entries.push(("located", "when the mismatch was located"));
+    }
     text += &legend(&entries);
     text += "<div class=\"panels\">\n";
     for curve in evidence.curves.iter().take(MOST) {
@@ -112,6 +115,7 @@ fn residuals(curve: &Curve, span: Option<(f64, f64)>) -> Panel {
     let mut layers: Vec<Layer> = span.map(|(from, to)| Layer::Span("located", from, to)).into_iter().collect();
     layers.push(Layer::Line("nominal", nominal));
     layers.push(Layer::Line("corrected", corrected));
+    layers.extend([Layer::Level("bound", BAND), Layer::Level("bound", -BAND)]);
     if let Some((start, end)) = ends(curve) {
         layers.insert(0, Layer::Band("noise", vec![(start, -BAND, BAND), (end, -BAND, BAND)]));
     }

@@ -54,7 +54,7 @@ fn row(p: &Parameter) -> Vec<String> {
 
 /// A number to a hundredth of a width.
 fn digits_like(x: f64, width: f64) -> String {
-    let needed = if width > 0.0 && x != 0.0 { (x.abs() / width).log10().ceil() as i32 + 3 } else { 4 };
+    let needed = if width > 0.0 && x != 0.0 { (x.abs() / width).log10().ceil() as i32 + 2 } else { 4 };
     crate::number::digits(x, needed.clamp(2, 12))
 }
 
@@ -183,11 +183,11 @@ fn whiteness(evidence: &Evidence) -> String {
         return String::new();
     }
     let mut text = String::from(
-        "<h3>Is what is left white?</h3><p>Autocorrelation of the residual by lag. Where nothing is left to explain, bars stay within the \
-         dashed lines (95 % of them).</p>\n",
+        "<h3>Is what is left white?</h3><p>Autocorrelation of the residual by lag. Where nothing is left to explain, 95 % of the bars stay \
+         within the band.</p>\n",
     );
     text +=
-        &legend(&[("nominal", "nominal model"), ("corrected", "corrected model"), ("bound", "95 % of white noise")]);
+        &legend(&[("nominal", "nominal model"), ("corrected", "corrected model"), ("noise", "95 % of white noise")]);
     text += "<div class=\"panels\">\n";
     evidence.whiteness.iter().take(MOST).for_each(|w| text += &bars(w));
     text + "</div>\n"
@@ -199,18 +199,19 @@ fn bars(w: &Whiteness) -> String {
         _ => 1.0,
     };
     let shifted = |by: f64, values: &[f64]| w.lags_s.iter().zip(values).map(|(t, v)| (t + by * step, *v)).collect();
+    let ends = (w.lags_s.first().map_or(0.0, |t| t - step), w.lags_s.last().map_or(1.0, |t| t + step));
     let layers = vec![
+        Layer::Band("noise", vec![(ends.0, -w.bound, w.bound), (ends.1, -w.bound, w.bound)]),
         Layer::Bars("nominal", 0.36 * step, shifted(-0.2, &w.before)),
         Layer::Bars("corrected", 0.36 * step, shifted(0.2, &w.after)),
         Layer::Level("zero", 0.0),
-        Layer::Level("bound", w.bound),
-        Layer::Level("bound", -w.bound),
     ];
     let low = w.before.iter().chain(&w.after).copied().fold(-0.2, f64::min);
     let panel = Panel {
         across: "lag, s".to_owned(),
         up: "autocorrelation".to_owned(),
         height: 110.0,
+        across_ends: Some(ends),
         up_ends: Some((low * 1.1, 1.0)),
         layers,
         ..Panel::default()

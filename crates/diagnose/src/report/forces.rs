@@ -42,7 +42,7 @@ fn over_time(force: &MissingForce) -> String {
     let mut law_name = String::new();
     if let Some((name, values)) = &force.law {
         layers.push(Layer::Line("law", pairs(values)));
-        law_name = format!("; law: {}", escape(name));
+        law_name = if name.is_empty() { String::new() } else { format!("; law: {}", escape(name)) };
     }
     let panel = Panel {
         across: "time, s".to_owned(),
@@ -63,7 +63,7 @@ fn against(scatter: &Scatter) -> String {
     let mut words = String::new();
     if let Some((name, law)) = &scatter.law {
         layers.push(Layer::Line("law", law.clone()));
-        words = format!("law: {}", escape(name));
+        words = if name.is_empty() { String::new() } else { format!("law: {}", escape(name)) };
     }
     if scatter.r_squared.is_finite() {
         let explains = format!("explains {} of its variance where it was not fitted", percent(scatter.r_squared));

@@ -3,7 +3,7 @@
 use super::{legend, share_bar, table};
 use crate::diagnosis::{Diagnosis, Role};
 use crate::evidence::{Evidence, Heat, HeatRow};
-use crate::number::{digits, short};
+use crate::number::short;
 use crate::words::when_words;
 use record::plot::{Axis, escape};
 use std::fmt::Write;
@@ -22,8 +22,12 @@ pub(super) fn section(diagnosis: &Diagnosis, evidence: &Evidence) -> String {
         return text;
     }
     text += "<p>Each strip is one channel over time. Its colour is the mean square of prediction minus measurement in units of the \
-             sensor's noise: pale is noise alone, each darker step is a larger mismatch. The strip above is the scenario as it was, \
-             the one below it the corrected model; where the correction is right, the lower strip is pale throughout.</p>\n";
+             sensor's noise: faint is noise alone, each stronger step is a larger mismatch; hatched is not measured.";
+    if evidence.heat.iter().flat_map(|h| &h.rows).any(|row| !row.corrected.is_empty()) {
+        text += " The upper strip is the scenario as it was, the lower one the corrected model; where the correction is right, the \
+                 lower strip is faint throughout.";
+    }
+    text += "</p>\n";
     text += &key();
     let mut seen = [0_usize; 2];
     for heat in &evidence.heat {
@@ -39,19 +43,13 @@ fn located(diagnosis: &Diagnosis, evidence: &Evidence) -> String {
         return String::new();
     }
     let row = |l: &crate::diagnosis::Located| {
-        vec![
-            format!("<b>{}</b>", escape(&l.place)),
-            share_bar(l.share),
-            when_words(l, evidence),
-            format!("{} to {} s", digits(l.from_s, 3), digits(l.to_s, 3)),
-            escape(&l.condition),
-        ]
+        vec![format!("<b>{}</b>", escape(&l.place)), share_bar(l.share), when_words(l, evidence), escape(&l.condition)]
     };
     let rows: Vec<Vec<String>> = diagnosis.located.iter().map(row).collect();
     "<p>The share is the part of the mismatch beyond the noise that a missing force (or a wrong reading) at this place alone \
      explains; places can explain the same part, so shares may add up to more than 100 %.</p>\n"
         .to_owned()
-        + &table("", &["place", "share of the mismatch", "when", "from, to", "condition"], &rows)
+        + &table("", &["place", "share of the mismatch", "when", "condition"], &rows)
 }
 
 fn key() -> String {
@@ -67,9 +65,9 @@ fn add_run(text: &mut String, heat: &Heat, is_open: bool) {
         Some(window) => format!("state estimated anew every {} s", short(window)),
         None => "one free run".to_owned(),
     };
-    let _ = write!(
+    let _ = writeln!(
         text,
-        "<details class=\"heat\"{}><summary>{} <em>{}</em> <span>{how}</span></summary>\n",
+        "<details class=\"heat\"{}><summary>{} <em>{}</em> <span>{how}</span></summary>",
         if is_open { " open" } else { "" },
         escape(&heat.run),
         heat.role.word()

@@ -81,10 +81,10 @@ fn add_head(page: &mut String, diagnosis: &Diagnosis, evidence: &Evidence) {
     );
     page.push_str("<div class=\"tiles\">\n");
     for (label, value, below) in tiles(diagnosis, evidence) {
+        let value = escape(&value).replace('/', "/<wbr>").replace(':', ":<wbr>");
         let _ = writeln!(
             page,
-            "<div class=\"tile\"><span>{label}</span><b>{}</b><small>{}</small></div>",
-            escape(&value),
+            "<div class=\"tile\"><span>{label}</span><b>{value}</b><small>{}</small></div>",
             escape(&below)
         );
     }
@@ -99,11 +99,17 @@ fn add_head(page: &mut String, diagnosis: &Diagnosis, evidence: &Evidence) {
 fn tiles(diagnosis: &Diagnosis, evidence: &Evidence) -> Vec<(&'static str, String, String)> {
     let mut tiles = Vec::new();
     for found in &diagnosis.effects {
-        tiles.push(("effect", format!("{} at {}", found.name, place_words(&found.place)), parameter_words(found)));
+        let at = format!("at {}: {}", place_words(&found.place), parameter_words(found));
+        tiles.push(("effect", found.name.clone(), at));
     }
     if let Some(first) = diagnosis.located.first() {
-        tiles.push(("place", first.place.clone(), format!("{} of the mismatch", percent(first.share))));
+        tiles.push(("where", first.place.clone(), format!("{} of the mismatch", percent(first.share))));
         tiles.push(("when", when_words(first, evidence), first.condition.clone()));
+    }
+    if let Some(test) = evidence.detection.as_ref().filter(|_| diagnosis.verdict == Verdict::NoMismatch) {
+        let bound =
+            format!("noise alone passes {} with {}", crate::number::short(test.bound), percent(test.false_alarm));
+        tiles.push(("test for a mismatch", crate::number::short(test.value), bound));
     }
     let error = &diagnosis.error;
     let (label, judged) = match error.holdout {
@@ -114,9 +120,12 @@ fn tiles(diagnosis: &Diagnosis, evidence: &Evidence) -> Vec<(&'static str, Strin
         true => noise(e.before),
         false => format!("{} → {}", noise(e.before), noise(e.after)),
     };
-    tiles.push((label, arrow(judged), "free run, in units of noise; 1.0 is perfect".to_owned()));
-    let windows = format!("restarted every {} s", crate::number::short(error.window_s));
-    tiles.push(("error in windows", arrow(error.windowed), windows));
+    let windows = format!(
+        "× noise, free run; {} in windows of {} s",
+        arrow(error.windowed),
+        crate::number::short(error.window_s)
+    );
+    tiles.push((label, arrow(judged), windows));
     tiles
 }
 
@@ -151,7 +160,10 @@ fn table(class: &str, header: &[&str], rows: &[Vec<String>]) -> String {
 /// A bar of a share with its figure.
 fn share_bar(share: f64) -> String {
     let width = if share.is_finite() { 100.0 * share.clamp(0.0, 1.0) } else { 0.0 };
-    format!("<span class=\"share\"><i style=\"width:{width:.0}%\"></i></span> {}", percent(share))
+    format!(
+        "<span class=\"nowrap\"><span class=\"share\"><i style=\"width:{width:.0}%\"></i></span> {}</span>",
+        percent(share)
+    )
 }
 
 /// A drawing with its caption above it.

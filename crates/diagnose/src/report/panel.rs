@@ -12,6 +12,8 @@ const TOP: f64 = 8.0;
 /// Room below for ticks, and for ticks with the axis' name.
 const BELOW: f64 = 24.0;
 const BELOW_NAMED: f64 = 42.0;
+/// Least distance of two ticks upwards, px.
+const TICK_ROOM: f64 = 13.5;
 /// Columns to which lines are thinned: one per pixel of the drawing.
 const COLUMNS: usize = 400;
 
@@ -169,20 +171,25 @@ impl Panel {
         let (bottom, top) = axes.up.pixels;
         if !self.squashed {
             let ticks = axes.up.ticks();
-            let every = ((ticks.len() as f64 * 18.0) / (bottom - top)).ceil().max(1.0) as usize;
+            let every = ((ticks.len() as f64 * TICK_ROOM) / (bottom - top)).ceil().max(1.0) as usize;
             return ticks.into_iter().step_by(every).collect();
         }
-        let powers = (0..9).map(|p| 10_f64.powi(p));
-        let both = powers.flat_map(|v| [v, -v]).chain([0.0]);
-        let inside: Vec<f64> = both.filter(|v| (top..=bottom).contains(&axes.up.at(v.asinh()))).collect();
-        // Zero and the largest decades say most where there is little room.
-        let decades = inside.len() / 2;
-        let every = ((inside.len() as f64 * 16.0) / (bottom - top)).ceil().max(1.0) as i32;
-        let kept = inside
-            .into_iter()
-            .filter(|v| *v == 0.0 || (v.abs().log10().round() as i32 - (decades as i32 - 1)).rem_euclid(every) == 0);
-        kept.map(|v| (v, crate::number::digits(v, 1))).collect()
+        // Zero first, then the largest decades, then what still has room.
+        let powers = (0..9).rev().map(|p| 10_f64.powi(p));
+        let mut kept: Vec<(f64, f64)> = Vec::new();
+        for value in [0.0].into_iter().chain(powers.flat_map(|v| [v, -v])) {
+            let y = axes.up.at(value.asinh());
+            if (top..=bottom).contains(&y) && kept.iter().all(|(_, other)| (y - other).abs() >= TICK_ROOM) {
+                kept.push((value, y));
+            }
+        }
+        kept.into_iter().map(|(v, _)| (v, power_of_ten(v))).collect()
     }
+}
+
+/// `100`, `−10⁴`.
+fn power_of_ten(value: f64) -> String {
+    if value.abs() < 2e3 { crate::number::digits(value, 1) } else { crate::number::digits(value, 1).replace("1·", "") }
 }
 
 fn add_layer(svg: &mut String, layer: &Layer, axes: &Axes, (top, bottom): (f64, f64)) {

@@ -73,9 +73,9 @@ fn identifiability(evidence: &Evidence) -> String {
     );
     text += &table("", &header, &rows[..rows.len().min(ROWS)]);
     if rows.len() > ROWS {
-        let _ = write!(
+        let _ = writeln!(
             text,
-            "<details><summary>{} more</summary>{}</details>\n",
+            "<details><summary>{} more</summary>{}</details>",
             rows.len() - ROWS,
             table("", &header, &rows[ROWS..])
         );

@@ -111,7 +111,7 @@ pub fn score_set(set: &str, diagnosis: &Diagnosis, key: &Key) -> SetScore {
         given: Some(diagnosis.verdict),
         concealed: key.effects.len(),
         verdict,
-        name: (named > 0).then(|| matched.first_is_right && matched.extra.is_empty()),
+        name: (named > 0).then_some(matched.first_is_right && matched.extra.is_empty()),
         both: (key.effects.len() > 1).then_some(found_all),
         parameters: (named > 0).then(|| !judged.is_empty() && judged.iter().all(|j| j.right)),
         holdout,

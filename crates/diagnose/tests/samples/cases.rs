@@ -153,7 +153,7 @@ pub fn joint() -> (Diagnosis, Evidence) {
 /// Whether an impact is on, and how far it is through, for forces of a made-up docking.
 fn impact(t: f64) -> f64 {
     let through = |from: f64, length: f64| {
-        if (from..from + length).contains(&t) { ((t - from) / length * 3.1416).sin() } else { 0.0 }
+        if (from..from + length).contains(&t) { ((t - from) / length * std::f64::consts::PI).sin() } else { 0.0 }
     };
     through(0.45, 0.06) + 0.6 * through(0.9, 0.05) + 0.3 * through(1.6, 0.05)
 }

@@ -61,8 +61,10 @@ const DELAY: f64 = 0.3;
 /// Fits the sensor of a pair to all of its runs.
 pub(super) fn fit(axes: usize, tracks: &[Track], noise: &Noise, start: Model) -> Fit {
     let figures = figures(axes, tracks, noise);
-    let mut model = start;
     let (before, samples, _, _) = run(axes, tracks, noise, &Model::IDEAL, &[], &[]);
+    let is_better = || run(axes, tracks, noise, &start, &[], &[]).0 < 0.5 * before;
+    let start = if start.c == Model::IDEAL.c || is_better() { start } else { Model::IDEAL };
+    let mut model = start;
     let mut covariance = DMatrix::zeros(figures.len(), figures.len());
     let size = typical_rate(tracks);
     let prior: Vec<f64> = figures.iter().map(|figure| width(*figure, &start, size, noise)).collect();

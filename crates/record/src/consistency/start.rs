@@ -15,6 +15,8 @@ const WINDOWS: usize = 60;
 const TURN: f64 = 1.0;
 /// Share of the readings' variance that the crude law must explain before it is believed.
 const BELIEVED: f64 = 0.8;
+/// Distance from the ideal sensor, but for its size, within which a convention is taken for the right one.
+const NEAR: f64 = 0.4;
 /// Distance from the ideal sensor from which the crude law is the better start.
 const FAR: f64 = 0.1;
 
@@ -40,10 +42,13 @@ pub(super) fn other_convention(pair: &Pair, tracks: &[Track]) -> Option<&'static
     if !pair.is_rotation {
         return None;
     }
-    let explained = |turn: fn(Rot) -> Rot, world: bool| {
-        regress(3, &windows(tracks, turn, world)).map_or(0.0, |(_, _, explained)| explained)
+    // A sensor as it should be, but for its unit and some misalignment.
+    let fits = |turn: fn(Rot) -> Rot, world: bool| {
+        let Some((sensor, _, explained)) = regress(3, &windows(tracks, turn, world)) else { return false };
+        let size = sensor.determinant().cbrt();
+        explained > BELIEVED && size > 0.0 && (sensor / size - Mat3::identity()).norm() < NEAR
     };
-    if explained(|q| q, false) > BELIEVED {
+    if fits(|q| q, false) {
         return None;
     }
     let others: [(fn(Rot) -> Rot, bool, &str); 3] = [
@@ -51,7 +56,7 @@ pub(super) fn other_convention(pair: &Pair, tracks: &[Track]) -> Option<&'static
         (|q| q, true, "the angular velocity seems to be in world axes: the format wants it in the body frame"),
         (last_first, false, "the quaternion's components seem to be in the order x, y, z, w: map the columns anew"),
     ];
-    others.into_iter().find(|(turn, world, _)| explained(*turn, *world) > BELIEVED).map(|(_, _, what)| what)
+    others.into_iter().find(|(turn, world, _)| fits(*turn, *world)).map(|(_, _, what)| what)
 }
 
 fn last_first(q: Rot) -> Rot {
@@ -94,6 +99,14 @@ fn window(track: &Track, (from, to): (usize, usize), turn: fn(Rot) -> Rot, in_wo
     Some((change / dt, readings.iter().sum::<Vec3>() / readings.len() as f64))
 }
 
+/// Axes about which the positions move, beside the one that moves most.
+fn moving(axes: usize, windows: &[Window]) -> [bool; 3] {
+    const SHARE: f64 = 0.2;
+    let square = |j: usize| windows.iter().map(|w| w.0[j] * w.0[j]).sum::<f64>();
+    let most = (0..axes).map(square).fold(0.0, f64::max);
+    std::array::from_fn(|j| j < axes && square(j) > SHARE * SHARE * most)
+}
+
 /// Least squares of reading = S rate + b; the share of the readings' variance that it explains.
 fn regress(axes: usize, windows: &[Window]) -> Option<(Mat3, Vec3, f64)> {
     if windows.len() < 4 * (axes + 1) {
@@ -109,6 +122,11 @@ fn regress(axes: usize, windows: &[Window]) -> Option<(Mat3, Vec3, f64)> {
     }
     let ridge = 1e-9 * normal.diagonal().iter().take(axes).copied().fold(0.0, f64::max);
     (0..axes).for_each(|i| normal[(i, i)] += ridge);
+    let kept = moving(axes, windows);
+    for j in (0..axes).filter(|j| !kept[*j]) {
+        // An axis about which nothing moves says nothing: its column is held at 0 here and filled in below.
+        normal[(j, j)] += 1e9 * normal.diagonal().max().max(1.0);
+    }
     let solution = normal.try_inverse()? * right;
     let mean = windows.iter().map(|w| w.1).sum::<Vec3>() / windows.len() as f64;
     let (mut rest, mut all) = (0.0, 0.0);
@@ -123,5 +141,8 @@ fn regress(axes: usize, windows: &[Window]) -> Option<(Mat3, Vec3, f64)> {
         (0..axes).for_each(|j| sensor[(i, j)] = solution[(j, i)]);
         bias[i] = solution[(axes, i)];
     }
+    let moving: Vec<usize> = (0..axes).filter(|j| kept[*j]).collect();
+    let size = moving.iter().map(|j| sensor.column(*j).norm()).sum::<f64>() / moving.len().max(1) as f64;
+    (0..axes).filter(|j| !kept[*j]).for_each(|j| sensor.set_column(j, &(Vec3::ith(j, size))));
     (all > 0.0).then(|| (sensor, bias, 1.0 - rest / all))
 }

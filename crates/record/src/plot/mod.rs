@@ -7,6 +7,8 @@ mod axis;
 mod scale;
 
 pub use axis::{Axis, equalise, escape};
+mod recorded;
+pub use recorded::recording_svg;
 
 use crate::{Axes, Log, Plot};
 use scale::{Scale, shown};

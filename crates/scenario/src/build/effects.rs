@@ -15,6 +15,8 @@ mod sensor;
 
 pub(super) use entry::Entry;
 
+pub(super) use body::{NominalComs, nominal_coms};
+
 use super::actuators::ActuatorTable;
 use super::faults::Faults;
 use crate::effects::{EffectName, PlaceKind};
@@ -24,6 +26,7 @@ use sim::{Environment, Mechanism, PairLaw, ShapeSpec, VehicleSpec};
 /// The parts of a world that effects may change, before it is built.
 pub(super) struct Parts {
     pub(super) vehicles: Vec<VehicleSpec>,
+    pub(super) nominal_coms: NominalComs,
     pub(super) table: ActuatorTable,
     pub(super) shapes: Vec<ShapeSpec>,
     pub(super) pairs: Vec<([usize; 2], PairLaw)>,
@@ -106,10 +109,17 @@ pub(super) fn edit_robots(
     (names, robots): (&[&str], &mut [RobotDescription]),
     faults: &mut Faults<'_>,
 ) {
+    let coms = nominal_coms(robots);
+    // New values first, then what is added to them: whatever the order in the file.
+    let inertial = plan.iter().filter(|e| family(e.name, e.kind) == Family::Inertia);
+    let (added, set): (Vec<_>, Vec<_>) = inertial.partition(|e| e.name == EffectName::Payload);
+    for entry in set.into_iter().chain(added) {
+        inertia::edit(entry, (names, robots), faults);
+    }
     for entry in plan {
         match family(entry.name, entry.kind) {
-            Family::Inertia => inertia::edit(entry, (names, robots), faults),
-            Family::Body => body::edit_robots(entry, (names, robots), faults),
+            Family::Inertia => {}
+            Family::Body => body::edit_robots(entry, (names, robots, &coms), faults),
             Family::Contact => contact::edit_robots(entry, (names, robots), faults),
             Family::Armature | Family::Joint | Family::Line | Family::Sensor | Family::None => {}
         }

@@ -59,13 +59,21 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
     let mut faults = Faults::new(scenario);
     let plan = effects::check(scenario, &mut faults);
     let Some(vehicles) = vehicles::load(scenario, &plan, &mut faults) else { return Err(faults.into_errors()) };
-    let (robots, mut specs) = vehicles;
+    let (robots, nominal_coms, mut specs) = vehicles;
     let table = actuators::resolve(scenario, &mut specs, &mut faults);
     let (shapes, pairs) = shapes::resolve(scenario, &robots, &specs, &mut faults);
     let mechanisms = mechanisms::resolve(scenario, &specs, &mut faults);
     let environment = environment(&scenario.environment);
-    let mut parts =
-        effects::Parts { vehicles: specs, table, shapes, pairs, mechanisms, environment, effects: Vec::new() };
+    let mut parts = effects::Parts {
+        vehicles: specs,
+        nominal_coms,
+        table,
+        shapes,
+        pairs,
+        mechanisms,
+        environment,
+        effects: Vec::new(),
+    };
     effects::apply(&plan, &mut parts, &mut faults);
     refuse_what_is_not_simulated(scenario, &mut faults);
     if !faults.is_empty() {

@@ -12,7 +12,7 @@ pub(super) fn load(
     scenario: &Scenario,
     plan: &[Entry<'_>],
     faults: &mut Faults<'_>,
-) -> Option<(Vec<RobotDescription>, Vec<VehicleSpec>)> {
+) -> Option<(Vec<RobotDescription>, effects::NominalComs, Vec<VehicleSpec>)> {
     let dir = scenario.source.file_dir();
     let mut loaded = Vec::with_capacity(scenario.vehicles.len());
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
@@ -27,6 +27,7 @@ pub(super) fn load(
     }
     let (mut robots, bases): (Vec<_>, Vec<_>) = loaded.into_iter().unzip();
     let names: Vec<&str> = scenario.vehicles.iter().map(|v| v.name.as_str()).collect();
+    let nominal_coms = effects::nominal_coms(&robots);
     effects::edit_robots(plan, (&names, &mut robots), faults);
     let spec = |(vehicle, (robot, base)): (&Vehicle, (&RobotDescription, sim::Base))| VehicleSpec {
         name: vehicle.name.clone(),
@@ -34,7 +35,7 @@ pub(super) fn load(
         base,
     };
     let specs = scenario.vehicles.iter().zip(robots.iter().zip(bases)).map(spec).collect();
-    Some((robots, specs))
+    Some((robots, nominal_coms, specs))
 }
 
 fn base(scenario: &Scenario, i: usize, vehicle: &Vehicle, faults: &mut Faults<'_>) -> sim::Base {

@@ -89,7 +89,7 @@ fn of_joint(name: EffectName) -> Option<Row> {
                     Parameter { shape: Shape::NumberOrVector, ..zero("amplitude", ANY) },
                     shape("frequency", AT_LEAST_ZERO),
                     optional(shape("phase", ANY)),
-                    choice("kind", &["force", "torque"]),
+                    choice("kind", &["torque", "force"]),
                 ]
             },
         ),

@@ -144,6 +144,7 @@ impl Judge {
             + account.passive_joint_work
             + account.contact_work
             + account.mechanism_work
+            + account.effect_work
             + external;
         add("kinetic_energy_j", now.kinetic, "at the end");
         add("actuator_work_j", account.actuator_work, "work of the joint actuators");

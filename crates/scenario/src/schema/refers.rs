@@ -17,7 +17,6 @@ pub(super) struct Names<'a> {
     root: &'a Node,
     vehicles: Vec<&'a str>,
     actuators: Vec<&'a str>,
-    sensors: Vec<&'a str>,
     mechanisms: Vec<&'a str>,
 }
 
@@ -28,13 +27,7 @@ impl<'a> Names<'a> {
             let nodes = root.child(key).map(Node::list).unwrap_or_default();
             nodes.iter().filter_map(Node::name).collect()
         };
-        Self {
-            root,
-            vehicles: names("vehicle"),
-            actuators: names("actuator"),
-            sensors: names("sensor"),
-            mechanisms: names("mechanism"),
-        }
+        Self { root, vehicles: names("vehicle"), actuators: names("actuator"), mechanisms: names("mechanism") }
     }
 }
 

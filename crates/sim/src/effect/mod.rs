@@ -15,15 +15,21 @@
 //! when the first step begins: at rest under those commands.
 //! A world without effects pays one comparison per hook.
 
+mod body;
 mod joint;
 mod line;
+mod memory;
 mod series;
 
+pub use body::{Appendage, Axes, BodyAction, BodyEffect, BodyLaw, BodyMotion, BodyPlace, Load, Slosh, Sphere};
 pub use joint::{DryLevel, JointEffect, JointLaw};
 pub use line::{LineEffect, LineLaw};
+pub use memory::{MemorySlot, memory_layout};
 pub use series::Series;
 
+pub(crate) use body::{Parts, add_impulses, calc_carried, calc_carried_linear, drift_to_midpoint};
 pub(crate) use line::{Lines, accept, next_switch};
+pub(crate) use memory::{calc_relative, is_blank, rest_parts, set_relative};
 
 use crate::actuator::{Coordinate, CoordinatePoint};
 use crate::error::ModelError;
@@ -31,6 +37,8 @@ use crate::model::Model;
 use crate::state::State;
 use crate::step::Scheme;
 use crate::workspace::Workspace;
+use multibody::Kinematics;
+use spatial::{Vec3, Wrench};
 use std::ops::Range;
 
 /// Physics beyond the nominal model.
@@ -51,6 +59,10 @@ pub enum EffectKind {
     Series(Series),
     /// What happens to a command on its way to the actuator's output.
     Line(LineEffect),
+    /// A load on one body, or a part that moves inside it.
+    Body(BodyEffect),
+    /// A constant acceleration of everything, W axes, m/s²: a table out of level.
+    Tilt(Vec3),
 }
 
 impl EffectKind {
@@ -60,6 +72,8 @@ impl EffectKind {
             Self::Joint(effect) => effect.memory_names(),
             Self::Series(_) => &["deflection", "deflection_rate"],
             Self::Line(effect) => effect.memory_names(),
+            Self::Body(effect) => effect.law.memory_names(),
+            Self::Tilt(_) => &[],
         }
     }
 }
@@ -71,6 +85,8 @@ pub(crate) struct Effects {
     /// First memory of each effect, and the number of all.
     starts: Vec<usize>,
     pub lines: Lines,
+    /// Sum of the tilts, W axes, m/s².
+    pub tilt: Vec3,
     /// Whether an effect's memory has rates or is advanced by a step.
     has_motion: bool,
 }
@@ -83,8 +99,9 @@ impl Effects {
             starts.push(starts[starts.len() - 1] + effect.kind.memory_names().len());
         }
         let lines = Lines::new(model.actuators.len());
-        let has_motion = list.iter().any(|e| matches!(e.kind, EffectKind::Series(_)));
-        let mut effects = Self { list, starts, lines, has_motion };
+        let moves = |kind: &EffectKind| matches!(kind, EffectKind::Series(_) | EffectKind::Body(_));
+        let has_motion = list.iter().any(|e| moves(&e.kind));
+        let mut effects = Self { list, starts, lines, tilt: Vec3::zeros(), has_motion };
         for index in 0..effects.list.len() {
             effects.attach(index, model)?;
         }
@@ -108,6 +125,14 @@ impl Effects {
             EffectKind::Line(line) => {
                 self.lines.attach(line, self.starts[index], &model.actuators).map_err(|fault| refuse(&fault))?;
             }
+            EffectKind::Body(effect) => {
+                let place = body::find_place(model, &self.list, &effect.place);
+                let place = place.ok_or_else(|| refuse("names no vehicle or link"))?;
+                let law = effect.law;
+                law.find_fault(model.step).map_or(Ok(()), |fault| Err(refuse(&fault)))?;
+                self.list[index].kind = EffectKind::Body(BodyEffect { place, law });
+            }
+            EffectKind::Tilt(tilt) => self.tilt += tilt,
         }
         Ok(())
     }
@@ -148,12 +173,20 @@ impl Acting<'_> {
 }
 
 /// Adds what effects do to the bodies, about their vehicles' anchors, W axes.
-pub(crate) fn add_wrenches(model: &Model, _state: &State, _ws: &mut Workspace) {
-    for effect in &model.effects.list {
-        match effect.kind {
-            EffectKind::Joint(_) | EffectKind::Series(_) | EffectKind::Line(_) => {}
+pub(crate) fn add_wrenches(model: &Model, state: &State, ws: &mut Workspace) {
+    let tilt = model.effects.tilt;
+    if tilt != Vec3::zeros() {
+        for (body, &(vehicle, local)) in model.owners.iter().enumerate() {
+            let inertia = &ws.kin[vehicle].inertia[local];
+            ws.external[body] += Wrench::new(inertia.mc.cross(&tilt), inertia.mass * tilt);
         }
     }
+    body::eval(model, state, ws);
+}
+
+/// Whether forces on bodies must be evaluated again once the mean velocities of a step are known.
+pub(crate) fn depends_on_twists(model: &Model) -> bool {
+    model.effects.list.iter().any(|e| matches!(e.kind, EffectKind::Body(_)))
 }
 
 /// Rates of the memory at a stage of Runge–Kutta, whose accelerations `ws.v_gain` and `ws.dvel` hold (per second).
@@ -164,7 +197,8 @@ pub(crate) fn write_rates(model: &Model, state: &State, ws: &Workspace, rates: &
     for (index, effect) in model.effects.list.iter().enumerate() {
         let at = model.effects.memory(index);
         match &effect.kind {
-            EffectKind::Joint(_) | EffectKind::Line(_) => {}
+            EffectKind::Joint(_) | EffectKind::Line(_) | EffectKind::Tilt(_) => {}
+            EffectKind::Body(_) => rates[at.clone()].copy_from_slice(&ws.parts.rates[at]),
             EffectKind::Series(series) => {
                 let (force, v_dot) = (&ws.coordinate_forces[series.coordinate], ws.v_gain[series.coordinate]);
                 series.write_rates(&state.effects[at.clone()], force, v_dot, &mut rates[at]);
@@ -174,10 +208,11 @@ pub(crate) fn write_rates(model: &Model, state: &State, ws: &Workspace, rates: &
 }
 
 /// Memory over a step of a one-solve scheme, once the gains are known and before anything has moved.
-pub(crate) fn advance(model: &Model, state: &mut State, ws: &Workspace, scheme: Scheme) {
+pub(crate) fn advance(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
     if !model.effects.has_motion {
         return;
     }
+    body::advance(model, state, ws, scheme);
     for (index, effect) in model.effects.list.iter().enumerate() {
         if let EffectKind::Series(series) = &effect.kind {
             let i = series.coordinate;
@@ -205,7 +240,7 @@ pub(crate) fn commit(model: &Model, state: &mut State, ws: &Workspace) {
                 let end = line.calc_lagged(&acting, state.effects[at.start]);
                 state.effects[at.start] = end;
             }
-            EffectKind::Line(_) | EffectKind::Series(_) => {}
+            EffectKind::Line(_) | EffectKind::Series(_) | EffectKind::Body(_) | EffectKind::Tilt(_) => {}
         }
     }
 }
@@ -218,20 +253,21 @@ pub(crate) fn settle(model: &Model, state: &mut State) {
         let rest = match &effect.kind {
             EffectKind::Series(series) => series.calc_rest(&acting),
             EffectKind::Line(line) if !at.is_empty() => line.calc_demand(&acting),
-            EffectKind::Line(_) | EffectKind::Joint(_) => continue,
+            EffectKind::Line(_) | EffectKind::Joint(_) | EffectKind::Body(_) | EffectKind::Tilt(_) => continue,
         };
         state.effects[at.start] = rest;
     }
 }
 
-/// Energy that effects hold, J: in springs, and in the rotors behind them.
-pub(crate) fn calc_energy(model: &Model, state: &State) -> f64 {
+/// Energy that effects hold, J: in springs, in the rotors behind them, and in parts inside bodies.
+pub(crate) fn calc_energy(model: &Model, state: &State, kin: &[Kinematics]) -> f64 {
     let of = |(index, effect): (usize, &Effect)| match &effect.kind {
         EffectKind::Joint(joint) => joint.calc_energy(state.q[model.coordinates[joint.coordinate].q_index]),
         EffectKind::Series(series) => {
             series.calc_energy(&state.effects[model.effects.memory(index)], state.v[series.coordinate])
         }
-        EffectKind::Line(_) => 0.0,
+        EffectKind::Line(_) | EffectKind::Tilt(_) => 0.0,
+        EffectKind::Body(effect) => body::calc_energy(model, state, (index, effect), &kin[effect.place.vehicle]),
     };
     model.effects.list.iter().enumerate().map(of).sum()
 }

@@ -6,11 +6,17 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod beds;
+mod body_loads;
+mod body_parts;
 mod brush;
 mod convergence;
 mod determinism;
 mod docking;
 mod drives;
+mod effect_books;
+mod effect_gears;
+mod effect_joints;
+mod effect_lines;
 mod free_motion;
 mod friction;
 mod guided;

@@ -80,7 +80,6 @@ pub(super) fn links(
 }
 
 /// The links that a place names, once the trees are built: vehicle and link.
-#[expect(dead_code, reason = "effects on bodies will use it")]
 pub(super) fn tree_links(entry: &Entry<'_>, vehicles: &[VehicleSpec], faults: &mut Faults<'_>) -> Vec<(usize, usize)> {
     let (mut sites, mut candidates) = (Vec::new(), Vec::new());
     for (v, vehicle) in vehicles.iter().enumerate() {

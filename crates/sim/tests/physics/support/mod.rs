@@ -1,5 +1,6 @@
 //! Small worlds for the tests.
 
+pub(crate) mod effects;
 pub(crate) mod elliptic;
 pub(crate) mod mechanisms;
 pub(crate) mod scenes;

@@ -1,0 +1,60 @@
+//! White noise of a channel, from its own samples.
+//!
+//! The k-th difference of neighbouring samples lets slow motion vanish and multiplies white noise of variance σ² to
+//! (2k choose k) σ². The mean of the smaller three fifths of its squares is taken (impacts and spikes do not count, and a
+//! mean, unlike a median, does not jump on a lattice of rounded values), for k = 2 … 6: what motion is left falls with k,
+//! so the smallest is the estimate. Rounding's q²/12 is taken off. An orientation's components share
+//! one figure: the squares of their differences add to (2k choose k) σ²/4 · χ²(3), σ in rad about each axis.
+
+use crate::Series;
+
+/// Fewest samples for an estimate.
+const FEWEST: usize = 40;
+/// Orders of difference.
+const ORDERS: std::ops::RangeInclusive<usize> = 2..=6;
+/// Share of the squares that is taken.
+const SMALLER: f64 = 0.6;
+/// Mean of the smaller three fifths of χ² with one and with three degrees of freedom: k F(k+2)(x) / 0.6, F(k)(x) = 0.6.
+const TRIMMED: [f64; 2] = [0.214_453, 1.458_254];
+/// A pause this many median steps long is no neighbourhood.
+const PAUSE: f64 = 1.6;
+
+/// Standard deviation of the white noise without rounding, of a channel or of the components of one orientation.
+///
+/// None: too few samples. 0: no more than the rounding.
+pub fn white_noise(series: &[&Series]) -> Option<f64> {
+    let first = series.first()?;
+    let is_orientation = series.len() > 1;
+    let pause = PAUSE * first.median_step();
+    let estimate = |order: usize| -> Option<f64> {
+        let squares: Vec<f64> = (0..first.len().saturating_sub(order))
+            .filter(|i| first.times[*i + order] - first.times[*i] <= pause * order as f64)
+            .map(|i| series.iter().map(|s| difference(&s.values[i..=i + order]).powi(2)).sum())
+            .collect();
+        let mean = trimmed_mean(squares)?;
+        Some(mean / (binomial(2 * order, order) * TRIMMED[usize::from(is_orientation)]))
+    };
+    let variance = ORDERS.filter_map(estimate).reduce(f64::min)?;
+    let (factor, q) = if is_orientation { (4.0, first.quantum() * 2.0) } else { (1.0, first.quantum()) };
+    Some((factor * variance - q * q / 12.0).max(0.0).sqrt())
+}
+
+/// Difference of the highest order that these values allow.
+fn difference(values: &[f64]) -> f64 {
+    let order = values.len() - 1;
+    let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+    values.iter().enumerate().map(|(k, v)| sign(k) * binomial(order, k) * v).sum()
+}
+
+fn binomial(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
+}
+
+fn trimmed_mean(mut squares: Vec<f64>) -> Option<f64> {
+    if squares.len() < FEWEST {
+        return None;
+    }
+    let count = (SMALLER * squares.len() as f64) as usize;
+    squares.select_nth_unstable_by(count, f64::total_cmp);
+    Some(squares[..count].iter().sum::<f64>() / count as f64)
+}

@@ -1,0 +1,234 @@
+//! Body effects in the world: where their wrenches, rates and momenta enter a step.
+//!
+//! A vehicle's momentum (p, L) in [`State::momentum`] is that of its bodies *and* of the parts inside them. Parts and
+//! bodies exchange momentum without any impulse being added anywhere: the base twist follows from what the parts leave,
+//!
+//!   V_B = I_lock⁻¹ (h − h_parts − Σ I_i V_i^rel),
+//!
+//! so that internal effects conserve the total to rounding with every integrator. What the parts exert on their bodies
+//! enters the accelerations of the solve alone. Only a part's weight is an impulse from outside.
+//!
+//! Runge–Kutta integrates the memories with everything else. The Euler schemes kick (velocities and momenta with the
+//! forces of the step's start) and then drift (places, with the velocities of its end); the midpoint scheme takes the
+//! rates at the middle of the step, evaluated once more when its mean velocities are known.
+
+use super::{BodyEffect, BodyMotion, BodyPlace};
+use crate::effect::{Effect, EffectKind};
+use crate::model::Model;
+use crate::state::State;
+use crate::step::Scheme;
+use crate::workspace::{Workspace, world_wrench};
+use multibody::Kinematics;
+use spatial::{Inertia, Vec3, Wrench};
+
+/// Scratch of the body effects.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Parts {
+    /// Whether any effect has a part with momentum of its own.
+    pub has_parts: bool,
+    /// Per body, about its vehicle's anchor: from the parts inside.
+    pub internal: Vec<Wrench>,
+    /// Per vehicle, about its anchor: weight of the parts.
+    weight: Vec<Wrench>,
+    /// Power of that weight, and what dampers take, W.
+    power: f64,
+    loss: f64,
+    /// Of [`State::effects`]; only the parts' own entries are used.
+    pub rates: Vec<f64>,
+    /// The memory at the start of a midpoint step.
+    start: Vec<f64>,
+}
+
+impl Parts {
+    pub fn new(model: &Model) -> Self {
+        let n = model.effects.n_memory();
+        Self {
+            has_parts: of_bodies(model).any(|(_, e)| e.law.has_part()),
+            internal: vec![Wrench::default(); model.owners.len()],
+            weight: vec![Wrench::default(); model.vehicles.len()],
+            power: 0.0,
+            loss: 0.0,
+            rates: vec![0.0; n],
+            start: vec![0.0; n],
+        }
+    }
+}
+
+/// The body effects of a model with their indices.
+pub(crate) fn of_bodies(model: &Model) -> impl Iterator<Item = (usize, &BodyEffect)> {
+    model.effects.list.iter().enumerate().filter_map(|(index, effect)| match &effect.kind {
+        EffectKind::Body(body) => Some((index, body)),
+        _ => None,
+    })
+}
+
+/// Centre of mass and tensor of the rigid body that an effect's link belongs to, with all parts locked at rest in it;
+/// `None` where there is no such link.
+pub(crate) fn find_place(model: &Model, effects: &[Effect], place: &BodyPlace) -> Option<BodyPlace> {
+    let tree = &model.vehicles.get(place.vehicle)?.tree;
+    let link = tree.links.get(place.link)?;
+    let mut whole = tree.bodies[link.body].inertia;
+    for effect in effects {
+        if let EffectKind::Body(other) = &effect.kind
+            && other.place.vehicle == place.vehicle
+            && let Some(at) = tree.links.get(other.place.link).filter(|l| l.body == link.body)
+        {
+            whole += other.law.calc_locked().transformed(&at.frame_bl.rot, &at.frame_bl.pos);
+        }
+    }
+    let rot_lb = link.frame_bl.rot.transpose();
+    let com = link.frame_bl.inverse_point(&whole.com());
+    Some(BodyPlace { com, tensor_com: rot_lb * whole.tensor_com() * rot_lb.transpose(), ..*place })
+}
+
+/// The effect's link at the positions and velocities that `kin` holds.
+pub(crate) fn calc_motion(model: &Model, kin: &Kinematics, place: &BodyPlace, time: f64) -> BodyMotion {
+    let tree = &model.vehicles[place.vehicle].tree;
+    BodyMotion { frame_wl: kin.link_frame(tree, place.link), twist: kin.link_twist(tree, place.link), time }
+}
+
+/// Acceleration of free fall at a point of W, m/s².
+fn calc_field(model: &Model, time: f64, point: &Vec3) -> Vec3 {
+    let unit = Inertia { mass: 1.0, ..Inertia::default() };
+    model.environment.calc_wrench(time, point, &unit).force + model.effects.tilt
+}
+
+/// Evaluates all body effects at the present stage: external wrenches join those of `ws.external`, the rest waits in
+/// `ws.parts`.
+pub(crate) fn eval(model: &Model, state: &State, ws: &mut Workspace) {
+    let mut external = std::mem::take(&mut ws.external);
+    eval_parts(model, state, ws, |body, wrench| external[body] += wrench);
+    ws.external = external;
+}
+
+fn eval_parts(model: &Model, state: &State, ws: &mut Workspace, mut push: impl FnMut(usize, Wrench)) {
+    let mut parts = std::mem::take(&mut ws.parts);
+    parts.internal.fill(Wrench::default());
+    parts.weight.fill(Wrench::default());
+    (parts.power, parts.loss) = (0.0, 0.0);
+    for (index, effect) in of_bodies(model) {
+        let BodyPlace { vehicle, link, .. } = effect.place;
+        let kin = &ws.kin[vehicle];
+        let motion = calc_motion(model, kin, &effect.place, state.time);
+        let at = model.effects.memory(index);
+        let memory = &state.effects[at.clone()];
+        let particle = effect.law.particle(memory);
+        let field = particle.map_or(Vec3::zeros(), |(_, x, _)| calc_field(model, state.time, &x));
+        let action = effect.law.eval(&effect.place, &motion, memory, &field, &mut parts.rates[at]);
+        let to_anchor = kin.anchor - motion.frame_wl.pos;
+        let body = model.vehicles[vehicle].body0 + model.vehicles[vehicle].tree.links[link].body;
+        push(body, action.external.about(&to_anchor));
+        parts.internal[body] += action.internal.about(&to_anchor);
+        parts.weight[vehicle] += action.on_part.about(&to_anchor);
+        parts.power += particle.map_or(0.0, |(_, _, v)| action.on_part.force.dot(&v));
+        parts.loss += action.loss;
+    }
+    ws.parts = parts;
+}
+
+/// What the parts weigh joins the momentum, and what their dampers take the account.
+pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: f64) {
+    if !ws.parts.has_parts {
+        return;
+    }
+    for (i, (vehicle, weight)) in model.vehicles.iter().zip(&ws.parts.weight).enumerate() {
+        let impulse = world_wrench(vehicle, &ws.kin[i].anchor, &(*weight * h));
+        state.momentum[i] += impulse;
+        state.account.impulse += impulse;
+    }
+    state.account.external_work += h * ws.parts.power;
+    for (body, internal) in ws.parts.internal.iter().enumerate() {
+        let (vehicle, local) = model.owners[body];
+        let mean = ws.kin[vehicle].vel[local] + ws.dvel[body] * 0.5;
+        state.account.effect_work += h * mean.dot(internal);
+    }
+    state.account.effect_loss += h * ws.parts.loss;
+}
+
+/// Momentum of the parts inside a vehicle's bodies, about its anchor, W axes.
+pub(crate) fn calc_carried(model: &Model, state: &State, vehicle: usize, kin: &Kinematics) -> Wrench {
+    let tree = &model.vehicles[vehicle].tree;
+    let mut sum = Wrench::default();
+    for (index, effect) in of_bodies(model).filter(|(_, e)| e.place.vehicle == vehicle) {
+        let frame_wl = kin.link_frame(tree, effect.place.link);
+        let own = effect.law.calc_momentum(&frame_wl, &state.effects[model.effects.memory(index)]);
+        sum += own.about(&(kin.anchor - frame_wl.pos));
+    }
+    sum
+}
+
+/// Linear momentum of the parts inside a vehicle's bodies, N·s; a function of the memory alone.
+pub(crate) fn calc_carried_linear(model: &Model, state: &State, vehicle: usize) -> Vec3 {
+    let own = |(index, effect): (usize, &BodyEffect)| {
+        let particle = effect.law.particle(&state.effects[model.effects.memory(index)]);
+        particle.map_or(Vec3::zeros(), |(m, _, v)| m * v)
+    };
+    of_bodies(model).filter(|(_, e)| e.place.vehicle == vehicle).map(own).sum()
+}
+
+/// The memory half a step on, with the rates of its start: where the midpoint scheme evaluates.
+pub(crate) fn drift_to_midpoint(model: &Model, state: &mut State, ws: &mut Workspace, half: f64) {
+    if !ws.parts.has_parts {
+        return;
+    }
+    eval_parts(model, state, ws, |_, _| {});
+    ws.parts.start.copy_from_slice(&state.effects);
+    for (index, _) in of_bodies(model) {
+        for k in model.effects.memory(index) {
+            state.effects[k] += half * ws.parts.rates[k];
+        }
+    }
+}
+
+/// The memory at the end of a one-solve step, once the gains are known and before anything has moved.
+pub(crate) fn advance(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
+    if !ws.parts.has_parts {
+        return;
+    }
+    let h = ws.step;
+    for (index, effect) in of_bodies(model) {
+        let at = model.effects.memory(index);
+        let (memory, rates) = (&mut state.effects[at.clone()], &mut ws.parts.rates[at.clone()]);
+        if scheme == Scheme::ImplicitMidpoint {
+            memory.iter_mut().zip(&ws.parts.start[at]).zip(rates).for_each(|((m, s), r)| *m = s + h * *r);
+            continue;
+        }
+        let kin = &ws.kin[effect.place.vehicle];
+        let mut motion = calc_motion(model, kin, &effect.place, state.time);
+        let vehicle = &model.vehicles[effect.place.vehicle];
+        let gain = ws.dvel[vehicle.body0 + vehicle.tree.links[effect.place.link].body];
+        motion.twist += gain.about(&(motion.frame_wl.pos - kin.anchor));
+        kick_and_drift(effect, &motion, memory, rates, h);
+    }
+}
+
+/// Velocities and momenta with the rates of the step's start, then places with what they have become.
+fn kick_and_drift(effect: &BodyEffect, end: &BodyMotion, memory: &mut [f64], rates: &mut [f64], h: f64) {
+    let first = effect.law.first_kick();
+    for k in first..memory.len() {
+        memory[k] += h * rates[k];
+    }
+    effect.law.eval(&effect.place, end, memory, &Vec3::zeros(), rates);
+    for k in 0..first {
+        memory[k] += h * rates[k];
+    }
+}
+
+/// Puts every part to rest with its body, at the positions and velocities that `ws` holds.
+pub(crate) fn rest(model: &Model, state: &mut State, ws: &Workspace) {
+    for (index, effect) in of_bodies(model) {
+        let motion = calc_motion(model, &ws.kin[effect.place.vehicle], &effect.place, state.time);
+        let memory = &mut state.effects[model.effects.memory(index)];
+        effect.law.calc_memory(&motion, &REST[..memory.len()], memory);
+    }
+}
+
+/// Relative coordinates of a part at rest.
+const REST: [f64; 6] = [0.0; 6];
+
+/// Energy of the parts, J: of their motion, and in their springs.
+pub(crate) fn calc_energy(model: &Model, state: &State, effect: (usize, &BodyEffect), kin: &Kinematics) -> f64 {
+    let (index, BodyEffect { place, law }) = effect;
+    let frame = kin.link_frame(&model.vehicles[place.vehicle].tree, place.link);
+    law.calc_energy(&frame, &state.effects[model.effects.memory(index)])
+}
