@@ -102,9 +102,9 @@ fn figures(axes: usize, tracks: &[Track], noise: &Noise) -> Vec<Figure> {
     figures
 }
 
-fn rms(tracks: &[Track], values: impl Fn(&Track) -> &Vec<Vec3>, axis: usize) -> f64 {
+fn rms(tracks: &[Track], values: fn(&Track) -> &Vec<Vec3>, axis: usize) -> f64 {
     let count: usize = tracks.iter().map(|track| values(track).len()).sum();
-    let square: f64 = tracks.iter().flat_map(|track| values(track)).map(|v| v[axis] * v[axis]).sum();
+    let square: f64 = tracks.iter().flat_map(values).map(|v| v[axis] * v[axis]).sum();
     (square / count.max(1) as f64).sqrt()
 }
 
@@ -377,7 +377,8 @@ impl Fit {
     }
 
     fn variance_of_difference(&self, a: Figure, b: Figure) -> Option<f64> {
-        (self.std_err(a)?, self.std_err(b)?);
+        self.std_err(a)?;
+        self.std_err(b)?;
         let at = |figure| self.figures.iter().position(|f| *f == figure);
         let (i, j) = (at(a)?, at(b)?);
         Some(self.covariance[(i, i)] + self.covariance[(j, j)] - 2.0 * self.covariance[(i, j)])

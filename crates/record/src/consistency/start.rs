@@ -23,6 +23,9 @@ const FAR: f64 = 0.1;
 /// A window: mean rate from positions, mean reading.
 type Window = (Vec3, Vec3);
 
+/// How a quaternion is to be read, whether the rate is in world axes, and what is then to be said.
+type Convention = (fn(Rot) -> Rot, bool, &'static str);
+
 /// The start of the fit.
 pub(super) fn guess(axes: usize, tracks: &[Track]) -> Model {
     let ideal = Model::IDEAL;
@@ -51,7 +54,7 @@ pub(super) fn other_convention(pair: &Pair, tracks: &[Track]) -> Option<&'static
     if fits(|q| q, false) {
         return None;
     }
-    let others: [(fn(Rot) -> Rot, bool, &str); 3] = [
+    let others: [Convention; 3] = [
         (
             |q| q.inverse(),
             false,

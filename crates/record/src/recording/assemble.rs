@@ -293,7 +293,7 @@ fn check_noise(set: &mut RecordingSet) {
     let mut remarks = Vec::new();
     for prefix in set.noise.keys() {
         let fits = |c: &&str| c.strip_prefix(prefix.as_str()).is_some_and(|r| r.is_empty() || r.starts_with('.'));
-        if !channels.iter().any(|channel| fits(&channel)) {
+        if !channels.iter().any(fits) {
             let prefixes = channels.iter().flat_map(|c| [*c, c.rsplit_once('.').map_or(*c, |(head, _)| head)]);
             let near = nearest(prefix, prefixes).map(|near| format!("; did you mean \"{near}\"?")).unwrap_or_default();
             let what = format!("[noise] names a channel that no run has{near}");
