@@ -6,7 +6,7 @@ use scenario::spec::{Effect, ParamValue};
 use spatial::Vec3;
 
 /// Coarsest steps (s) whose error stays below a tenth of the noise.
-const STEP_S: [f64; 2] = [2.5e-4, 1e-3];
+const STEP_S: [f64; 2] = [2.5e-4, 2e-4];
 
 fn nominal(rig: &str, step: f64) -> scenario::Scenario {
     let file = format!("{}/../../scenarios/rigs/{rig}.toml", env!("CARGO_MANIFEST_DIR"));

@@ -52,6 +52,7 @@ fn edit(entry: &Entry<'_>, law: &mut PairLaw, grain: Grain) -> Result<(), String
         EffectName::ContactDamping => match &mut law.normal.law {
             NormalLaw::HuntCrossley { dissipation, .. } => *dissipation = number("c"),
             NormalLaw::SpringDamper { damping, .. } => *damping = number("c"),
+            NormalLaw::Constant { .. } => return Err(DEAD_WEIGHT.to_owned()),
         },
         EffectName::Adhesion => law.normal.adhesion += number("force"),
         EffectName::FrictionCoefficient => set_level(law, number("mu"))?,
@@ -106,9 +107,12 @@ fn set_stiffness(law: &mut NormalLaw, k: f64, n: Option<f64>) -> Result<(), Stri
             }
             *stiffness = k;
         }
+        NormalLaw::Constant { .. } => return Err(DEAD_WEIGHT.to_owned()),
     }
     Ok(())
 }
+
+const DEAD_WEIGHT: &str = "meets a contact that is pressed by a constant force and has no such number; leave it out";
 
 fn bristle(law: &mut PairLaw) -> Result<&mut Bristle, String> {
     match &mut law.friction {
