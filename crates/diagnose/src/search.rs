@@ -75,9 +75,18 @@ pub fn search(
     let mut attempts = Vec::new();
     let mut round = 0;
     while is_significant(&now, limits) && now.set.members.len() < limits.effects {
-        let all = hypotheses(&now);
-        let scores = screen(stage, plant, &now, &all)?;
-        let (best, mut tried) = refit_best(stage, plant, &now, (&all, &scores), (limits, round))?;
+        let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) = hypotheses(&now).into_iter().partition(|h| h.is_dear);
+        let scores = screen(stage, plant, &now, &cheap)?;
+        let (mut best, mut tried) = refit_best(stage, plant, &now, (&cheap, &scores), (limits, round))?;
+        // What is dear to screen is screened only where the rest leaves something.
+        if best.as_ref().is_none_or(|b| is_significant(b, limits)) {
+            let scores = screen(stage, plant, &now, &dear)?;
+            let (other, mut more) = refit_best(stage, plant, &now, (&dear, &scores), (limits, round))?;
+            tried.append(&mut more);
+            if other.as_ref().is_some_and(|o| best.as_ref().is_none_or(|b| criterion(o) < criterion(b))) {
+                best = other;
+            }
+        }
         let Some(best) = best.filter(|b| criterion(b) < criterion(&now)) else {
             attempts.append(&mut tried);
             break;

@@ -76,9 +76,28 @@ pub fn run(scenario: Scenario, set: &RecordingSet) -> Result<(), DiagnoseError> 
     };
     let limits = Limits { effects: 3, refits: 4, sigmas: 4.0 };
     let (found, attempts) = search(&stage, &plant, nominal, &facts, &limits)?;
+    tell(&attempts);
+    show("found", &found, t0);
+    if window.is_some() {
+        let segments: Vec<Segment> = found
+            .segments
+            .iter()
+            .filter(|s| s.span.from == tapes[s.run].span.0)
+            .map(|s| Segment { span: crate::replay::Span { from: s.span.from, to: tapes[s.run].span.1 }, ..s.clone() })
+            .collect();
+        let whole = fit(&stage, &plant, found.set, segments, Effort { iterations: 12, share: 1e-5 })?;
+        show("whole", &whole, t0);
+        let (found, attempts) = search(&stage, &plant, whole, &facts, &limits)?;
+        tell(&attempts);
+        show("found", &found, t0);
+    }
+    Ok(())
+}
+
+fn tell(attempts: &[crate::search::Attempt]) {
     for a in attempts.iter().filter(|a| a.fall.is_some() || a.share > 0.02) {
         println!(
-            "  {} {:28} {:24} S {:11.1} share {:.4} fall {:?} gain {:?} p {} {} {:?}",
+            "  {} {:28} {:24} S {:11.1} share {:.4} fall {:?} gain {:?} p {} {} {:.4?}",
             a.round,
             a.name,
             a.place,
@@ -91,8 +110,6 @@ pub fn run(scenario: Scenario, set: &RecordingSet) -> Result<(), DiagnoseError> 
             a.found
         );
     }
-    show("found", &found, t0);
-    Ok(())
 }
 
 fn show(what: &str, f: &Fit, t0: std::time::Instant) {
