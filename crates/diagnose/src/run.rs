@@ -29,12 +29,9 @@ use std::time::Instant;
 pub(crate) struct Findings {
     pub title: String,
     pub window: f64,
-    pub pace: Pace,
     pub located: Located,
     pub nominal: Fit,
     pub found: Fit,
-    /// Whether the found set was fitted over whole runs.
-    pub is_whole: bool,
     pub attempts: Vec<Attempt>,
     pub verdict: Verdict,
     pub judgement: Judgement,
@@ -83,12 +80,10 @@ pub fn diagnose(
     let findings = Findings {
         title: set.title.clone(),
         window,
-        pace: stage.pace,
         verdict: verdict(&nominal, &found),
         located,
         nominal,
         found,
-        is_whole: follows,
         attempts,
         judgement,
         timings: clock.timings,

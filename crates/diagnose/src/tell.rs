@@ -33,13 +33,20 @@ pub(crate) fn tell(
         located: located(findings, stage),
         effects,
         error: errors(findings, stage),
-        remarks: inspection.remarks.iter().map(|r| r.what.clone()).collect(),
+        remarks: inspection
+            .remarks
+            .iter()
+            .filter(|r| r.severity > record::Severity::Note)
+            .map(|r| r.what.clone())
+            .collect(),
     };
     let evidence = Evidence {
         title: findings.title.clone(),
         quality: inspection.remarks.iter().map(quality).collect(),
         discretisation: None,
         heat: heat(findings, stage),
+        curves: crate::curves::curves(findings, stage),
+        forces: crate::curves::forces(findings, stage),
         ranking: ranking(findings),
         parameters: parameters(findings),
         correlation: correlation(&findings.found.covariance),
@@ -156,7 +163,7 @@ fn errors(findings: &Findings, stage: &Stage<'_>) -> Errors {
     }
 }
 
-fn role(role: record::Role) -> Role {
+pub(crate) fn role(role: record::Role) -> Role {
     match role {
         record::Role::Fit => Role::Fit,
         record::Role::Holdout => Role::Holdout,
