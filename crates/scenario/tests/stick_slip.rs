@@ -1,4 +1,4 @@
-//! The rig stick-slip against practice recordings: the true model predicts position and force to within the sensors' noise.
+//! The rig stick-slip against practice recordings: the model of the key predicts position and force to within the sensors' noise.
 //!
 //! Recordings are looked for in `$SOFTDOCK_RECORDINGS` or in `../shared/recordings` beside the checkout; without them the test
 //! says that it was skipped.
@@ -6,35 +6,14 @@
 
 use record::Signals;
 use scenario::measure::Meter;
-use scenario::{Mission, build, load};
+use scenario::{Mission, build, parse};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// The true laws of the sets, and their step: the nominal step, but for the level that falls within 3 mm/s.
-const SETS: [(&str, &str, &[&str]); 4] = [
-    (
-        "01",
-        "csv",
-        &[
-            "contact[0].friction.mu=0.235",
-            "contact[0].friction.mu_static=0.275",
-            "contact[0].friction.stribeck_velocity_m_per_s=0.003",
-            "integrator.step_s=1e-4",
-        ],
-    ),
-    ("02", "csv", &["contact[0].friction.mu=0.243"]),
-    ("03", "parquet", &["contact[0].friction.mu=0.258", "contact[0].friction.across_ratio=0.9224806201550387", GRAIN]),
-    (
-        "04",
-        "parquet",
-        &[
-            "contact[0].friction.viscous_n_s_per_m=14",
-            "contact[0].friction.stiffness_n_per_m=38000",
-            "contact[0].friction.damping_n_s_per_m=30",
-        ],
-    ),
-];
-/// Brushed along 0.5 rad.
-const GRAIN: &str = "contact[0].grain={ on = \"world/plate\", axis = [0.8775825618903728, 0.479425538604203, 0.0] }";
+/// Sets whose keys name every effect, the kind of their files, and the step: the nominal one, but for the level that falls
+/// within 3 mm/s.
+const SETS: [(&str, &str, &str); 4] =
+    [("01", "csv", "1e-4"), ("02", "csv", "2.5e-4"), ("03", "parquet", "2.5e-4"), ("04", "parquet", "2.5e-4")];
 /// Channels with sensor noise and written rounding.
 const CHANNELS: [(&str, f64, f64); 4] = [
     ("body.slider.position.x", 5e-6, 1e-6),
@@ -50,6 +29,28 @@ fn practice() -> Option<PathBuf> {
     let folder = named.map_or_else(|| PathBuf::from(beside), PathBuf::from);
     // The variable may also name what stands beside `practice`: `real`.
     [folder.join("practice"), folder.join("../practice")].into_iter().find(|dir| dir.is_dir())
+}
+
+/// The `[[effect]]`s of a key as a scenario file has them.
+fn effects(key: &Path) -> String {
+    let key: Value = serde_json::from_str(&std::fs::read_to_string(key).unwrap()).unwrap();
+    let mut text = String::new();
+    for effect in key["effects"].as_array().unwrap() {
+        text += &format!("\n[[effect]]\nname = {}\nplace = {}\n", effect["name"], effect["place"]);
+        for (name, value) in effect["params"].as_object().unwrap() {
+            text += &format!("{name} = {value}\n");
+        }
+    }
+    text
+}
+
+/// The rig with effects, its stage driven by a recording.
+fn mission(effects: &str, step: &str, recording: &Path) -> Mission {
+    let rig = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/rigs/stick-slip.toml");
+    let text = std::fs::read_to_string(&rig).unwrap() + effects;
+    let overrides = [format!("integrator.step_s={step}"), format!("drive.stage.file={}", recording.display())];
+    let spec = parse(&text, &rig.display().to_string(), &overrides).unwrap_or_else(|e| panic!("{e}"));
+    build(&spec).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// RMS over noise of position and of force.
@@ -71,23 +72,20 @@ fn replay(mut mission: Mission, recording: &Signals) -> [f64; 2] {
 }
 
 #[test]
-fn true_laws_predict_every_run_to_the_noise() {
+fn true_effects_predict_runs_to_the_noise() {
     let Some(practice) = practice() else {
         println!("SKIPPED: no recordings; set SOFTDOCK_RECORDINGS to the folder that holds practice/stick-slip-02");
         return;
     };
-    let rig = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/rigs/stick-slip.toml");
-    for (set, kind, laws) in SETS {
+    for (set, kind, step) in SETS {
+        let effects = effects(&practice.join(format!("keys/stick-slip-{set}.json")));
         for run in [1, 5] {
             let file = practice.join(format!("stick-slip-{set}/run-0{run}.{kind}"));
             let recording = match kind {
                 "csv" => record::read_csv(&file).unwrap(),
                 _ => record::read_parquet(&file).unwrap().1,
             };
-            let mut overrides: Vec<String> = laws.iter().map(|s| (*s).to_owned()).collect();
-            overrides.push(format!("drive.stage.file={}", file.display()));
-            let mission =
-                build(&load(&rig, &overrides).unwrap_or_else(|e| panic!("{e}"))).unwrap_or_else(|e| panic!("{e}"));
+            let mission = mission(&effects, step, &file);
             let started = std::time::Instant::now();
             let [position, force] = replay(mission, &recording);
             println!(
