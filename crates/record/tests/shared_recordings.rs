@@ -1,7 +1,7 @@
 //! Recordings that are not part of softdock: measured ones of other teams in their own columns, and the practice sets.
 //!
-//! `SOFTDOCK_RECORDINGS` names the folder of the measured ones, `../shared/recordings/real` beside the checkout by
-//! default; the practice sets stand beside it. Without them the tests say loudly that they show nothing.
+//! `SOFTDOCK_RECORDINGS` names the folder that holds `real` and `practice`, or `real` itself; `../shared/recordings` beside
+//! the checkout by default. Without them the tests say loudly that they show nothing.
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 mod support;
@@ -12,8 +12,9 @@ use support::exact;
 
 fn real(test: &str) -> Option<PathBuf> {
     let given = std::env::var_os("SOFTDOCK_RECORDINGS").filter(|folder| !folder.is_empty()).map(PathBuf::from);
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings/real");
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings");
     let folder = given.unwrap_or_else(beside);
+    let folder = Some(folder.join("real")).filter(|real| real.is_dir()).unwrap_or(folder);
     if !folder.is_dir() {
         eprintln!("SKIPPED {test}: SOFTDOCK_RECORDINGS names no folder with recordings, so nothing was shown");
         return None;

@@ -2,7 +2,7 @@
 //! the simulation must leave the sensors' noise and nothing else.
 //!
 //! The recordings were made by another simulator, with its own integration. They are not part of the repository:
-//! `SOFTDOCK_RECORDINGS` names the folder that holds `practice/`, else `../shared/recordings` beside the checkout is tried.
+//! `SOFTDOCK_RECORDINGS` names their folder, `../shared/recordings` beside the checkout by default.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use record::{RecordedRun, RecordingSet};
@@ -24,9 +24,10 @@ fn root() -> PathBuf {
 
 /// The practice sets, if they are here.
 fn practice() -> Option<PathBuf> {
-    let named = std::env::var("SOFTDOCK_RECORDINGS").ok().filter(|s| !s.is_empty()).map(PathBuf::from);
-    let beside = [root().join("../shared/recordings"), root().join("../../shared/recordings")];
-    let found = named.into_iter().chain(beside).map(|dir| dir.join("practice")).find(|dir| dir.exists());
+    let named = std::env::var_os("SOFTDOCK_RECORDINGS").filter(|folder| !folder.is_empty());
+    let folder = named.map_or_else(|| root().join("../shared/recordings"), PathBuf::from);
+    // The variable may also name what stands beside `practice`: `real`.
+    let found = [folder.join("practice"), folder.join("../practice")].into_iter().find(|dir| dir.is_dir());
     if found.is_none() {
         println!("SKIPPED: no recordings; set SOFTDOCK_RECORDINGS to the folder that holds practice/");
     }
@@ -120,10 +121,10 @@ fn replay(mission: &mut Mission, run: &RecordedRun, start: &[f64]) -> [(f64, usi
         if measured[0][0].times.get(next).is_none_or(|t| (t - time).abs() > 1e-9) {
             continue;
         }
-        for i in 0..JOINTS {
-            let (q, v) = world.motor_side(i);
-            for (kind, simulated) in [q, v].into_iter().enumerate() {
-                let miss = (measured[kind][i].values[next] - simulated) / NOISE[kind];
+        for (kind, series) in measured.iter().enumerate() {
+            for (i, joint) in series.iter().enumerate() {
+                let (q, v) = world.motor_side(i);
+                let miss = (joint.values[next] - [q, v][kind]) / NOISE[kind];
                 sums[kind] = (sums[kind].0 + miss * miss, sums[kind].1 + 1);
             }
         }

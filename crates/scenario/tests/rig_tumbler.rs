@@ -3,7 +3,7 @@
 //! With the effects and the initial states of a practice set's key, the rig's nominal scenario must predict 300 s of
 //! attitude and gyro to within the sensors' noise, as the key says that the true model does. What moves inside a body
 //! starts somehow, which the keys do not tell: it is fitted, six numbers a run. Recordings are looked for
-//! in `$SOFTDOCK_RECORDINGS`, or in `shared/recordings` beside the checkout; where there are none, the test says so and passes.
+//! in `$SOFTDOCK_RECORDINGS`, or in `../shared/recordings` beside the checkout; where there are none, the test says so and passes.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 use scenario::Mission;
@@ -21,7 +21,8 @@ fn root() -> PathBuf {
 fn recordings() -> Option<PathBuf> {
     let named = std::env::var_os("SOFTDOCK_RECORDINGS").filter(|folder| !folder.is_empty());
     let folder = named.map_or_else(|| root().join("../shared/recordings"), PathBuf::from);
-    folder.join("practice").is_dir().then_some(folder.join("practice"))
+    // The variable may also name what stands beside `practice`: `real`.
+    [folder.join("practice"), folder.join("../practice")].into_iter().find(|dir| dir.is_dir())
 }
 
 /// One `[[effect]]` of a key as the scenario file has it.
@@ -131,7 +132,7 @@ fn calc_gap(a: &[(Rot, Vec3)], b: &[(Rot, Vec3)]) -> [f64; 2] {
 #[test]
 fn the_true_model_predicts_every_practice_run_to_the_noise() {
     let Some(folder) = recordings() else {
-        println!("SKIPPED: no recordings; set SOFTDOCK_RECORDINGS to the folder that holds practice/tumbler-01");
+        println!("SKIPPED: no recordings; set SOFTDOCK_RECORDINGS to the folder that holds practice");
         return;
     };
     for set in 1..=5 {

@@ -65,10 +65,11 @@ pub enum RealError {
     Model(#[from] sim::ModelError),
 }
 
-/// The folder of the recordings: as given, else from the environment.
+/// The folder of the recordings: as given, else from the environment; or `real` in it, where there is one.
 pub fn find_folder(given: Option<&Path>) -> Result<PathBuf, RealError> {
     let from_environment = || std::env::var_os(RECORDINGS).filter(|folder| !folder.is_empty()).map(PathBuf::from);
-    given.map(Path::to_owned).or_else(from_environment).ok_or(RealError::NoFolder)
+    let folder = given.map(Path::to_owned).or_else(from_environment).ok_or(RealError::NoFolder)?;
+    Ok(Some(folder.join("real")).filter(|real| real.is_dir()).unwrap_or(folder))
 }
 
 /// Whether an experiment cannot run because nobody said where its recordings are.

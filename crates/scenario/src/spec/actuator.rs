@@ -286,6 +286,7 @@ pub enum DriveMotion {
         channel: Option<String>,
         /// The channels that hold displacements along axes of `pose` ("x", "y", "z", m) and about its z ("yaw", rad).
         #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+        #[schemars(schema_with = "describe_axes")]
         channels: BTreeMap<DriveAxis, String>,
         /// Standard deviation of a sample, m or rad; estimated where absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -306,4 +307,19 @@ pub enum DriveAxis {
     Z,
     /// About z.
     Yaw,
+}
+
+/// A map from axes as a closed table: schemars takes an enum with described variants for any string.
+fn describe_axes(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    let channel = |what: &str| serde_json::json!({ "type": "string", "description": format!("The channel {what}.") });
+    schemars::json_schema!({
+        "type": "object",
+        "additionalProperties": false,
+        "properties": {
+            "x": channel("along x, m"),
+            "y": channel("along y, m"),
+            "z": channel("along z, m"),
+            "yaw": channel("about z, rad"),
+        },
+    })
 }

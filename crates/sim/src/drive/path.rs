@@ -9,7 +9,7 @@
 //!
 //! Before its first and after its last point a path goes on with the velocity that it has there.
 
-use super::smooth::{Smoothed, smooth};
+use super::smooth::smooth;
 
 /// Position, velocity and acceleration of a coordinate; m or rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -78,7 +78,7 @@ impl DrivePath {
             let points: Vec<_> = times.iter().zip(&values).map(|(t, x)| [*t, *x]).collect();
             return Self::through(&points);
         }
-        let Smoothed { states, .. } = smooth(&times, &values, noise);
+        let states = smooth(&times, &values, noise);
         let polynomials =
             (1..times.len()).map(|i| quintic(times[i] - times[i - 1], &states[i - 1], &states[i])).collect();
         Self { form: Form::Pieces(Pieces::new(times, polynomials)) }

@@ -19,16 +19,6 @@ type Point = [f64; 3];
 /// Symmetric 3 × 3, full.
 type Cov = [[f64; 3]; 3];
 
-/// A smoothed recording.
-#[derive(Clone, Debug)]
-pub(crate) struct Smoothed {
-    /// Position, velocity and acceleration at every sample.
-    pub states: Vec<Point>,
-    /// Standard deviation of the noise, by the fit or as given.
-    #[cfg_attr(not(test), allow(dead_code, reason = "what a test of the noise looks at"))]
-    pub noise: f64,
-}
-
 /// Bounds of log₁₀ λ, and the points of the coarse search.
 const SEARCH: (f64, f64, usize) = (-18.0, 3.0, 15);
 /// Steps of the golden section after it.
@@ -36,8 +26,8 @@ const REFINEMENTS: usize = 14;
 /// Noise below this share of the whole travel is rounding of the numbers themselves.
 const ROUNDING: f64 = 1e-13;
 
-/// Smooths at least four samples of increasing time.
-pub(crate) fn smooth(times: &[f64], values: &[f64], noise: Option<f64>) -> Smoothed {
+/// The path at every one of at least four samples of increasing time.
+pub(crate) fn smooth(times: &[f64], values: &[f64], noise: Option<f64>) -> Vec<Point> {
     let unit = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
     let spans: Vec<f64> = times.windows(2).map(|t| (t[1] - t[0]) / unit).collect();
     let samples: Vec<f64> = values.iter().map(|x| x - values[0]).collect();
@@ -51,7 +41,7 @@ pub(crate) fn smooth(times: &[f64], values: &[f64], noise: Option<f64>) -> Smoot
     for state in &mut states {
         *state = [state[0] + values[0], state[1] / unit, state[2] / (unit * unit)];
     }
-    Smoothed { states, noise: known.unwrap_or(fit.sum_sq / fit.count).sqrt() }
+    states
 }
 
 /// Samples, and the distance of each from the one before.

@@ -70,11 +70,6 @@ impl<'a> Entry<'a> {
         faults.add(&self.key("place"), format!("{} {reason}", self.name));
     }
 
-    /// For effects that are read and not simulated yet.
-    pub(super) fn not_yet(&self, faults: &mut Faults<'_>) {
-        faults.add(&self.key("name"), format!("{} is not simulated yet; remove the entry", self.name));
-    }
-
     /// For messages of the simulation.
     pub(super) fn title(&self) -> String {
         format!("{} at {}", self.name, self.spec.place)
