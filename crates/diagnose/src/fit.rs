@@ -112,6 +112,8 @@ pub struct Effort {
     pub iterations: usize,
     /// Promised fall of the cost, as a share of the excess and in variances of noise, below which it has converged.
     pub share: f64,
+    /// Whether derivatives by the starts may be those of an earlier fit, as long as they lead downhill.
+    pub reuse: bool,
 }
 
 /// Promised fall of the cost below which a fit has converged whatever its size.
@@ -171,7 +173,7 @@ fn iterate(
 ) -> Result<f64, DiagnoseError> {
     let slots = now.set.slots();
     let variations = vary(plant, &now.set, &slots, sizes)?;
-    let linear = stage.linearise(&now.built, &now.segments, &variations, steps);
+    let linear = stage.linearise(&now.built, &now.segments, &variations, (steps, effort.reuse));
     now.iterations += 1;
     let k = sum_reduced(&linear);
     let n = slots.len();
@@ -184,7 +186,14 @@ fn iterate(
         now.converged = true;
         return Ok(damping);
     }
-    for _ in 0..DAMPINGS {
+    let was_known = effort.reuse && now.segments.iter().any(|s| s.columns.is_some());
+    now.segments.iter_mut().zip(&linear).for_each(|(s, l)| s.columns.clone_from(&l.columns));
+    for trial in 0..DAMPINGS {
+        if trial == 2 && was_known {
+            // Old derivatives lead nowhere: new ones next time.
+            now.segments.iter_mut().for_each(|s| s.columns = None);
+            return Ok(damping);
+        }
         let theta = step(&a, &b, damping);
         let set = now.set.moved(&slots, theta.as_slice());
         let actual: Vec<f64> = slots.iter().map(|(m, c)| set.members[*m].1[*c] - now.set.members[*m].1[*c]).collect();

@@ -17,7 +17,7 @@ pub struct Judgement {
 }
 
 /// Fit of starts alone.
-const STARTS: Effort = Effort { iterations: 6, share: 1e-4 };
+const STARTS: Effort = Effort { iterations: 6, share: 1e-4, reuse: false };
 
 /// Estimates the starts of every run under both models.
 pub fn judge(stage: &Stage<'_>, plant: &Plant, set: &EffectSet, window: f64) -> Result<Judgement, DiagnoseError> {

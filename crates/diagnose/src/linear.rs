@@ -17,6 +17,7 @@ use crate::tape::Tape;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A stretch of a run, with the start that is believed at present.
 #[derive(Clone, Debug)]
@@ -27,6 +28,17 @@ pub struct Segment {
     pub span: Span,
     /// Its start.
     pub start: Start,
+    /// Derivatives by the start, as last computed: they change little from one fit to the next.
+    pub columns: Option<Arc<StartColumns>>,
+}
+
+/// Derivatives of a segment's residual by the coordinates of its start.
+#[derive(Clone, Debug)]
+pub struct StartColumns {
+    /// The coordinates.
+    pub freedoms: Vec<Freedom>,
+    /// A column each.
+    pub columns: Vec<DVector<f64>>,
 }
 
 /// A changed model and how far it was changed: one column of G.
@@ -53,6 +65,8 @@ pub struct SegmentLinear {
     pub reduced: DMatrix<f64>,
     /// H_ss⁺ H_sp: what the start takes of each column of (G, r).
     pub taken: DMatrix<f64>,
+    /// The start's columns.
+    pub columns: Option<Arc<StartColumns>>,
 }
 
 /// Steps of the difference quotients by coordinate of the start; they live from one linearisation to the next.
@@ -112,14 +126,16 @@ impl Stage<'_> {
         built: &Built,
         segments: &[Segment],
         variations: &[Variation],
-        steps: &mut Steps,
+        (steps, reuse): (&mut Steps, bool),
     ) -> Vec<SegmentLinear> {
         let first: Vec<Vec<f64>> = segments.iter().map(|s| steps.of(s.run, &freedoms(built, &s.start))).collect();
         let done: Vec<(SegmentLinear, Vec<f64>)> = segments
             .par_iter()
             .zip(first)
             .map(|(segment, sizes)| {
-                self.linearise_segment(built, segment, variations, (&freedoms(built, &segment.start), sizes))
+                let all = freedoms(built, &segment.start);
+                let known = segment.columns.as_ref().filter(|c| reuse && c.freedoms == all);
+                self.linearise_segment(built, segment, variations, (&all, sizes, known))
             })
             .collect();
         for (segment, (_, sizes)) in segments.iter().zip(&done) {
@@ -167,15 +183,21 @@ impl Stage<'_> {
         built: &Built,
         segment: &Segment,
         variations: &[Variation],
-        (all, sizes): (&[Freedom], Vec<f64>),
+        (all, sizes, known): (&[Freedom], Vec<f64>, Option<&Arc<StartColumns>>),
     ) -> (SegmentLinear, Vec<f64>) {
         let r = self.residuals(built, segment);
-        let of_start = self.quotients(built, segment, &r, (all, &sizes));
+        let (of_start, sizes) = match known {
+            Some(known) => (Arc::clone(known), sizes),
+            None => {
+                let (columns, sizes) = self.quotients(built, segment, &r, (all, &sizes)).into_iter().unzip();
+                (Arc::new(StartColumns { freedoms: all.to_vec(), columns }), sizes)
+            }
+        };
         let of_model: Vec<DVector<f64>> = variations.par_iter().map(|v| self.column(v, segment, &r)).collect();
-        let sizes = of_start.iter().map(|(_, size)| *size).collect();
-        let s: Vec<&DVector<f64>> = of_start.iter().map(|(column, _)| column).collect();
+        let s: Vec<&DVector<f64>> = of_start.columns.iter().collect();
         let p: Vec<&DVector<f64>> = of_model.iter().chain(std::iter::once(&r)).collect();
-        (eliminate(&s, &p, all), sizes)
+        let linear = eliminate(&s, &p, all);
+        (SegmentLinear { columns: Some(of_start), ..linear }, sizes)
     }
 }
 
@@ -224,7 +246,15 @@ pub fn eliminate(s: &[&DVector<f64>], p: &[&DVector<f64>], freedoms: &[Freedom])
     let reduced = &h_pp - h_sp.transpose() * &taken;
     let r = p[p.len() - 1];
     let shown = scale.iter().filter(|s| **s > 0.0).count();
-    SegmentLinear { count: r.len(), shown, cost: finite(r.norm_squared()), freedoms: freedoms.to_vec(), reduced, taken }
+    SegmentLinear {
+        count: r.len(),
+        shown,
+        cost: finite(r.norm_squared()),
+        freedoms: freedoms.to_vec(),
+        reduced,
+        taken,
+        columns: None,
+    }
 }
 
 impl SegmentLinear {

@@ -41,7 +41,7 @@ pub(crate) struct Findings {
 /// Limits of the search.
 const LIMITS: Limits = Limits { effects: 3, refits: 4, sigmas: 4.0 };
 /// Fit of starts alone.
-const STARTS: Effort = Effort { iterations: 6, share: 1e-4 };
+const STARTS: Effort = Effort { iterations: 6, share: 1e-4, reuse: false };
 /// Share of the mismatch that may be left for a verdict of "partly explained".
 const PARTLY: f64 = 0.1;
 
@@ -169,13 +169,15 @@ pub(crate) fn cut(
 ) -> Vec<Segment> {
     let runs = (0..tapes.len()).filter(|r| wanted(&tapes[*r]));
     let spans = runs.flat_map(|run| windows(&tapes[run], window).into_iter().map(move |span| (run, span)));
-    spans.map(|(run, span)| Segment { run, span, start: guess(built, &tapes[run], span.from) }).collect()
+    spans.map(|(run, span)| Segment { run, span, start: guess(built, &tapes[run], span.from), columns: None }).collect()
 }
 
 /// Whole runs, from the starts of their first windows.
 pub(crate) fn joined(fit: &Fit, tapes: &[Tape]) -> Vec<Segment> {
     let first = fit.segments.iter().filter(|s| s.span.from == tapes[s.run].span.0);
-    first.map(|s| Segment { span: Span { from: s.span.from, to: tapes[s.run].span.1 }, ..s.clone() }).collect()
+    first
+        .map(|s| Segment { span: Span { from: s.span.from, to: tapes[s.run].span.1 }, columns: None, ..s.clone() })
+        .collect()
 }
 
 /// Effects at joints where no force is missing are not looked at: an arm has many places.

@@ -48,9 +48,9 @@ pub struct Limits {
 }
 
 /// Refits of a first look, and of a kept set.
-const LOOK: Effort = Effort { iterations: 6, share: 2e-3 };
+const LOOK: Effort = Effort { iterations: 6, share: 2e-3, reuse: true };
 /// Until it has converged.
-const WHOLE: Effort = Effort { iterations: 12, share: 1e-5 };
+const WHOLE: Effort = Effort { iterations: 12, share: 1e-5, reuse: false };
 /// Promise relative to the best below which a hypothesis is not refitted.
 const PROMISING: f64 = 0.15;
 
