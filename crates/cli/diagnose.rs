@@ -1,12 +1,14 @@
 //! `softdock diagnose`: where a scenario and a recording differ, what was left out, and how much better it predicts with it.
 
-use anyhow::Result;
-use clap::Args;
-use std::path::PathBuf;
 use crate::Status;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+use softdock::diagnose::{self, summary_text, write_diagnosis};
+use softdock::record::{OutputFolder, RecordingSet};
+use std::path::PathBuf;
 
 /// Arguments of `softdock diagnose`.
-#[derive(Debug, Args)]
+#[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
     /// The scenario that models the rig
     scenario: PathBuf,
@@ -15,16 +17,46 @@ pub(crate) struct Arguments {
     /// Folder for report.html, diagnosis.json and patched.toml [default: out/diagnose/RECORDING]
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Changes a value of the scenario first, e.g. vehicle.target.mass=3
+    /// Changes a value of the scenario first, e.g. integrator.step_s=1e-4
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
+    /// Print diagnosis.json instead of the summary
+    #[arg(long)]
+    json: bool,
+    /// No progress bar
+    #[arg(long)]
+    quiet: bool,
 }
 
-/// Runs the command.
-pub(crate) fn main(arguments: &Arguments) -> Result<Status> {
-    let _ = &arguments.out;
+/// Diagnoses, writes the files, and says by the status whether the recording is explained.
+pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let scenario = softdock::scenario::load(&arguments.scenario, &arguments.set)?;
-    let set = softdock::record::RecordingSet::load(&arguments.recording)?;
-    softdock::diagnose::trial::run(scenario, &set)?;
-    Ok(Status::AsExpected)
+    let set = RecordingSet::load(&arguments.recording)?;
+    let name = arguments.recording.file_name().map_or_else(|| "recording".into(), |n| n.to_os_string());
+    let target = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out/diagnose").join(name));
+    let folder = OutputFolder::create(&target)?;
+    let bar = progress(arguments.quiet);
+    let show = |stage: &str, share: f64| {
+        bar.set_message(stage.to_owned());
+        bar.set_position((1000.0 * share) as u64);
+    };
+    let (diagnosis, evidence) = diagnose::diagnose(scenario.clone(), &set, &show)?;
+    bar.finish_and_clear();
+    let summary = serde_json::Map::from_iter([("verdict".to_owned(), json!(diagnosis.verdict.word()))]);
+    write_diagnosis(&folder, &scenario, &diagnosis, &evidence)?;
+    let place = folder.finish(&summary)?;
+    if arguments.json {
+        print!("{}", diagnosis.to_json()?);
+    } else {
+        println!("{}\nThe report is {}", summary_text(&diagnosis, &evidence), place.join("report.html").display());
+    }
+    Ok(if diagnosis.verdict.is_good() { Status::AsExpected } else { Status::NotAsExpected })
+}
+
+fn progress(quiet: bool) -> ProgressBar {
+    let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(1000) };
+    if let Ok(style) = ProgressStyle::with_template("{msg:>36} {wide_bar} {percent:>3} %  {elapsed} (left {eta})") {
+        bar.set_style(style);
+    }
+    bar
 }

@@ -176,17 +176,24 @@ fn contacts(built: &Built) -> Vec<ContactFact> {
             Some(Friction::Bristle(f)) => Some([f.mu_kinetic, f.stiffness, f.damping]),
             _ => None,
         };
-        all.push(ContactFact { name, normal, bristle, mass: 1.0, has_normal_motion: normal.is_some() });
+        let (body_a, body_b) = built.model.pair_bodies(pair);
+        let mass = [body_a, body_b].map(|b| free_mass(built, b)).into_iter().fold(f64::INFINITY, f64::min);
+        all.push(ContactFact { name, normal, bristle, mass, has_normal_motion: normal.is_some() });
     }
     all
+}
+
+/// Mass of the vehicle of a body that moves; infinite for one that does not.
+fn free_mass(built: &Built, body: usize) -> f64 {
+    let vehicle = built.model.owners.get(body).map(|(v, _)| &built.model.vehicles[*v]);
+    vehicle.filter(|v| !v.base.is_held()).map_or(f64::INFINITY, |v| v.tree.mass())
 }
 
 fn normal_numbers(normal: &Normal) -> Option<[f64; 3]> {
     match normal.law {
         NormalLaw::HuntCrossley { stiffness, exponent, dissipation } => Some([stiffness, exponent, dissipation]),
         NormalLaw::SpringDamper { stiffness, .. } => Some([stiffness, 1.0, 0.0]),
-        #[allow(unreachable_patterns)]
-        _ => None,
+        NormalLaw::Constant { .. } => None,
     }
 }
 

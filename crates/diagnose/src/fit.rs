@@ -38,6 +38,7 @@ impl EffectSet {
     /// The set with one more.
     pub fn with(&self, hypothesis: &Hypothesis, x: &[f64]) -> Self {
         let mut set = self.clone();
+        set.held.extend(hypothesis.held.iter().map(|k| (set.members.len(), *k)));
         set.members.push((hypothesis.clone(), x.to_vec()));
         set
     }

@@ -102,6 +102,10 @@ pub struct Hypothesis {
     pub screens: Vec<ScreenPoint>,
     /// Kind of claim.
     pub tier: Tier,
+    /// Coordinates that no data of this kind can show; they stay at neutral.
+    pub held: Vec<usize>,
+    /// Whether its screen is dear: many points, or memory whose start is free too.
+    pub is_dear: bool,
 }
 
 impl Coordinate {
@@ -222,6 +226,9 @@ impl Hypothesis {
             let sum = |k: usize| columns.iter().zip(amplitudes).map(|(c, w)| w * c.direction[k]).sum::<f64>();
             return (strength > 0.0).then(|| self.clamped(&(0..self.coordinates.len()).map(sum).collect::<Vec<_>>()));
         }
+        if self.name == "slosh" || self.name == "flexible-appendage" {
+            return self.start_from_tensor(columns, amplitudes);
+        }
         if strength <= 0.0 {
             return None;
         }
@@ -230,9 +237,32 @@ impl Hypothesis {
             "joint-elasticity" | "actuator-delay" => x[0] = strength * columns[0].direction[0],
             "joint-backlash" | "actuator-lag" => x[0] = columns[0].direction[0] + strength.ln(),
             "mount-compliance" => x[0] -= strength.ln(),
-            "flexible-appendage" => (2..5).for_each(|k| x[k] *= strength.sqrt()),
             _ => {}
         }
+        Some(self.clamped(&x))
+    }
+
+    /// Coordinates of a part inside a body: the columns are secants along six axes, and what counts is the tensor Σ w v vᵀ of the
+    /// vector (place of a mass, coupling of a mode); its largest principal axis makes one part.
+    fn start_from_tensor(&self, columns: &[Column], amplitudes: &[f64]) -> Option<Vec<f64>> {
+        let first = self.coordinates.iter().position(|c| c.key.ends_with("[0]"))?;
+        let vector = |c: &Column| nalgebra::Vector3::from_fn(|k, _| c.direction[first + k]);
+        let tensor = columns
+            .iter()
+            .zip(amplitudes)
+            .fold(nalgebra::Matrix3::zeros(), |sum, (c, w)| sum + *w * vector(c) * vector(c).transpose());
+        let eigen = tensor.symmetric_eigen();
+        let (at, largest) = eigen.eigenvalues.argmax();
+        if largest <= 0.0 {
+            return None;
+        }
+        let axis = eigen.eigenvectors.column(at).into_owned();
+        let mut x = columns[0].direction.clone();
+        let length = if self.name == "slosh" { vector(&columns[0]).norm() } else { largest.sqrt() };
+        if self.name == "slosh" {
+            x[0] *= largest / length.powi(2);
+        }
+        (0..3).for_each(|k| x[first + k] = length * axis[k]);
         Some(self.clamped(&x))
     }
 

@@ -7,6 +7,7 @@
 //! of [`summary_text`] and the scenario of [`patched_toml`]. [`score`] judges diagnoses against answer keys.
 
 pub mod catalogue;
+mod curves;
 pub mod diagnosis;
 pub mod error;
 pub mod evidence;
@@ -14,6 +15,7 @@ pub mod facts;
 pub mod fit;
 pub mod guess;
 pub mod hypothesis;
+pub mod judge;
 pub mod linear;
 pub mod locate;
 mod number;
@@ -23,13 +25,14 @@ pub mod plant;
 pub mod reading;
 pub mod replay;
 pub mod report;
+pub mod run;
 pub mod score;
 pub mod screen;
 pub mod search;
 pub mod start;
 mod summary;
 pub mod tape;
-pub mod trial;
+mod tell;
 mod vocabulary;
 pub mod words;
 
@@ -39,5 +42,6 @@ pub use evidence::Evidence;
 pub use output::{DIAGNOSIS_FILE, OutputError, write_diagnosis};
 pub use patched::{FILE as PATCHED_FILE, patched_toml};
 pub use report::report_html;
+pub use run::diagnose;
 pub use summary::summary_text;
 pub use vocabulary::{plain_name, unit};

@@ -112,8 +112,9 @@ fn advance_to(world: &mut World, time: f64, pace: Pace) -> Result<(), sim::StepE
 
 /// The events of a span with their numbers, in the order of the instants they tell of: late sensors read what was.
 fn events_in(tape: &Tape, span: Span, sensors: &[(Gauge, SensorModel)]) -> Vec<(usize, Event)> {
-    let late =
-        |(i, e): (usize, &Event)| (i, Event { time: (e.time - sensors[e.reading as usize].1.delay).max(span.from), ..*e });
+    let late = |(i, e): (usize, &Event)| {
+        (i, Event { time: (e.time - sensors[e.reading as usize].1.delay).max(span.from), ..*e })
+    };
     let mut events: Vec<_> = tape.events[tape.range(span)].iter().enumerate().map(late).collect();
     if sensors.iter().any(|(_, s)| s.delay != 0.0) {
         events.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));

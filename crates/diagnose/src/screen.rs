@@ -33,6 +33,8 @@ pub struct Score {
 
 /// Root mean square (units of noise) that a column's step shall have on the pilot segments.
 const WISH: f64 = 0.3;
+/// Root mean square below which a probe's step says nothing, units of noise.
+const SILENT: f64 = 1e-3;
 /// Segments that tune the steps.
 const PILOTS: usize = 3;
 /// Segments that a screen looks at.
@@ -68,13 +70,8 @@ fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     let products = sum_products(stage, fit, &active, &probes);
     let scores = points.iter().zip(&probes).zip(products).filter_map(|((at, probes), k)| {
         let hypothesis = &all[at.0];
-        score(hypothesis, &hypothesis.screens[at.1], probes, &k, active.len()).map(|(score, rank, start)| Score {
-            hypothesis: at.0,
-            point: at.1,
-            score,
-            rank,
-            start,
-        })
+        score(hypothesis, &hypothesis.screens[at.1], probes, &k, (active.len(), fit.count))
+            .map(|(score, rank, start)| Score { hypothesis: at.0, point: at.1, score, rank, start })
     });
     let mut scores: Vec<Score> = scores.collect();
     scores.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -149,7 +146,8 @@ fn products_of(
     let g: Vec<DVector<f64>> = active.par_iter().map(|v| stage.column(v, segment, &r)).collect();
     let of_point = |probes: &Vec<Probe>| {
         let columns: Vec<DVector<f64>> = probes.iter().map(|p| stage.column(&p.variation, segment, &r)).collect();
-        let own = own_columns(stage, segment, &base, probes.first());
+        let own: Vec<DVector<f64>> =
+            probes.iter().step_by(3).take(2).flat_map(|p| own_columns(stage, segment, &base, p)).collect();
         let starts: Vec<&DVector<f64>> = s.iter().chain(&own).collect();
         let others: Vec<&DVector<f64>> = g.iter().chain(&columns).chain(std::iter::once(&r)).collect();
         let names = vec![Freedom::Memory(0); starts.len()];
@@ -159,10 +157,10 @@ fn products_of(
 }
 
 /// Columns of the memory that a hypothesis brings.
-fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: Option<&Probe>) -> Vec<DVector<f64>> {
-    let Some(probe) = probe else { return Vec::new() };
+fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: &Probe) -> Vec<DVector<f64>> {
     let built = &probe.variation.built;
-    let own: Vec<Freedom> = freedoms(built, &segment.start.fitted_to(built)).into_iter().filter(|f| !base.contains(f)).collect();
+    let own: Vec<Freedom> =
+        freedoms(built, &segment.start.fitted_to(built)).into_iter().filter(|f| !base.contains(f)).collect();
     if own.is_empty() {
         return Vec::new();
     }
@@ -177,17 +175,26 @@ fn score(
     point: &ScreenPoint,
     probes: &[Probe],
     k: &DMatrix<f64>,
-    active: usize,
+    (active, count): (usize, usize),
 ) -> Option<(f64, usize, Vec<f64>)> {
     let n = probes.len();
     if n == 0 || n < point.columns.len() {
         return None;
     }
-    let (a, b) = project_active(k, active, n);
-    let scale = DVector::from_fn(n, |i, _| {
-        if a[(i, i)] > 1e-12 * k[(active + i, active + i)].max(1e-30) { a[(i, i)].sqrt() } else { 0.0 }
-    });
-    let rank = scale.iter().filter(|s| **s > 0.0).count();
+    let mut k = k.clone();
+    // A column that its step does not even move by a thousandth of the noise is rounding, not physics.
+    let last = k.ncols() - 1;
+    for (i, probe) in probes.iter().enumerate() {
+        let moved = probe.variation.step.abs() * (k[(active + i, active + i)].max(0.0) / count as f64).sqrt();
+        if moved < SILENT {
+            (0..=last).for_each(|j| {
+                k[(active + i, j)] = 0.0;
+                k[(j, active + i)] = 0.0;
+            });
+        }
+    }
+    let (a, b) = project_active(&k, active, n);
+    let rank = (0..n).filter(|i| a[(*i, *i)] > 1e-9 * k[(active + i, active + i)].max(1e-30)).count();
     let inverse = pseudo_inverse(&a);
     let amplitudes = -(&inverse * &b);
     let score = -(b.transpose() * &amplitudes)[(0, 0)];

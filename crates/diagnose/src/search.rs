@@ -54,14 +54,20 @@ const WHOLE: Effort = Effort { iterations: 12, share: 1e-5 };
 /// Promise relative to the best below which a hypothesis is not refitted.
 const PROMISING: f64 = 0.15;
 
+/// Promise relative to the best of a hypothesis that may rival one which explains everything.
+const RIVAL: f64 = 0.9;
+
 /// Schwarz's criterion.
 pub fn criterion(fit: &Fit) -> f64 {
     fit.cost + fit.set.slots().len() as f64 * (fit.count as f64).ln()
 }
 
+/// Excess per scalar that data sheets' noise figures do not vouch for.
+const LEAST: f64 = 0.02;
+
 /// Whether the cost is more than noise leaves.
 pub fn is_significant(fit: &Fit, limits: &Limits) -> bool {
-    fit.excess() > limits.sigmas * fit.spread()
+    fit.excess() > (limits.sigmas * fit.spread()).max(LEAST * fit.count as f64)
 }
 
 /// Adds and removes effects until nothing significant is left or nothing helps.
@@ -75,9 +81,20 @@ pub fn search(
     let mut attempts = Vec::new();
     let mut round = 0;
     while is_significant(&now, limits) && now.set.members.len() < limits.effects {
-        let all = hypotheses(&now);
-        let scores = screen(stage, plant, &now, &all)?;
-        let (best, mut tried) = refit_best(stage, plant, &now, (&all, &scores), (limits, round))?;
+        let is_active = |h: &Hypothesis| now.set.members.iter().any(|(m, _)| m.title() == h.title());
+        let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) =
+            hypotheses(&now).into_iter().filter(|h| !is_active(h)).partition(|h| h.is_dear);
+        let scores = screen(stage, plant, &now, &cheap)?;
+        let (mut best, mut tried) = refit_best(stage, plant, &now, (&cheap, &scores), (limits, round))?;
+        // What is dear to screen is screened only where the rest leaves something.
+        if best.as_ref().is_none_or(|b| is_significant(b, limits)) {
+            let scores = screen(stage, plant, &now, &dear)?;
+            let (other, mut more) = refit_best(stage, plant, &now, (&dear, &scores), (limits, round))?;
+            tried.append(&mut more);
+            if other.as_ref().is_some_and(|o| best.as_ref().is_none_or(|b| criterion(o) < criterion(b))) {
+                best = other;
+            }
+        }
         let Some(best) = best.filter(|b| criterion(b) < criterion(&now)) else {
             attempts.append(&mut tried);
             break;
@@ -117,7 +134,10 @@ fn refit_best(
             kept: false,
             found: score.start.clone(),
         };
-        if picked.iter().any(|p| std::ptr::eq(*p, score)) {
+        // Where all is explained only what promised nearly as much can be a rival.
+        let is_done = best.as_ref().is_some_and(|b| !is_significant(b, limits));
+        let hopeless = is_done && score.score < RIVAL * attempts.first().map_or(0.0, |a: &Attempt| a.score);
+        if !hopeless && picked.iter().any(|p| std::ptr::eq(*p, score)) {
             let Some(start) = possible(plant, now, h, &score.start) else { continue };
             let Ok(tried) = fit(stage, plant, now.set.with(h, &start), now.segments.clone(), LOOK) else { continue };
             attempt.fall = Some(now.cost - tried.cost);

@@ -118,7 +118,8 @@ impl Start {
             reach.borrow_mut().push((touch.pair, touch.normal_force, touch.point_w));
             Vec3::zeros()
         });
-        self.bristles = reach.into_inner().iter().map(|(pair, force, point)| dragged(&world, *pair, *force, point)).collect();
+        self.bristles =
+            reach.into_inner().iter().map(|(pair, force, point)| dragged(&world, *pair, *force, point)).collect();
     }
 
     /// Sets the memory of effects: its rest under the world's present commands, and the deviation from it.

@@ -2,7 +2,7 @@
 
 use super::{along, hypothesis, log_grid};
 use crate::facts::{BodyFact, Facts};
-use crate::hypothesis::{Column, Coordinate, Encoding, Hypothesis, ScreenPoint};
+use crate::hypothesis::{Coordinate, Encoding, Hypothesis, ScreenPoint};
 use scenario::spec::ParamValue;
 use spatial::Vec3;
 
@@ -55,7 +55,9 @@ fn add_inertial(body: &BodyFact, place: &str, all: &mut Vec<Hypothesis>) {
     // A body that nothing pushes shows only ratios: Ixx stays.
     let first = usize::from(body.is_torque_free);
     let columns: Vec<(usize, f64)> = (first..6).map(|k| (k, 1e-4 * size)).collect();
-    all.push(hypothesis("body-inertia", place, inertia).screened(&columns).nominal_number());
+    let mut h = hypothesis("body-inertia", place, inertia).screened(&columns).nominal_number();
+    h.held = (0..first).collect();
+    all.push(h);
     if of_arm {
         let payload = vec![
             Coordinate::level("mass", 0.0),
@@ -92,12 +94,10 @@ fn add_tether(place: &str, all: &mut Vec<Hypothesis>) {
     all.push(hypothesis("tether-stiffness", place, tether).encoded(Encoding::Anchored).screened(&steps));
 }
 
-/// Directions of an axis: 13 of a cube's, one of each pair.
-fn axes() -> Vec<Vec3> {
-    let digit = |i: usize, place: usize| (i / 3usize.pow(place as u32) % 3) as f64 - 1.0;
-    let all = (0..27).map(|i| Vec3::new(digit(i, 2), digit(i, 1), digit(i, 0)));
-    let first_positive = |d: &Vec3| d.iter().find(|x| **x != 0.0).is_some_and(|x| *x > 0.0);
-    all.filter(first_positive).map(|d| d.normalize()).collect()
+/// Six axes whose dyads span all symmetric tensors.
+fn axes() -> [Vec3; 6] {
+    let mixed = |i: usize, j: usize| (Vec3::ith(i, 1.0) + Vec3::ith(j, 1.0)).normalize();
+    [Vec3::x(), Vec3::y(), Vec3::z(), mixed(0, 1), mixed(0, 2), mixed(1, 2)]
 }
 
 /// Moving parts inside a body, and the tide.
@@ -125,14 +125,15 @@ fn slosh(body: &BodyFact, place: &str, grid: &[f64]) -> Hypothesis {
     ];
     coordinates.extend((0..3).map(|k| Coordinate { bounds: [-3.0, 3.0], ..Coordinate::free(POSITION[k], 0.0) }));
     let mut h = hypothesis("slosh", place, coordinates);
+    h.is_dear = true;
     for f in grid {
-        for axis in axes() {
-            let mut base = h.neutral();
-            base[1] = f.ln();
-            (0..3).for_each(|k| base[3 + k] = 0.5 * axis[k]);
-            let label = format!("f = {f:.3} Hz along {:.1} {:.1} {:.1}", axis.x, axis.y, axis.z);
-            h.screens.push(ScreenPoint { label, columns: vec![along(&base, &[(0, 1.0)], 1e-3 * body.mass)] });
-        }
+        let point = |axis: &Vec3| {
+            let mut x = h.neutral();
+            (x[0], x[1]) = (0.01 * body.mass, f.ln());
+            (0..3).for_each(|k| x[3 + k] = 0.3 * axis[k]);
+            x
+        };
+        h = h.clone().screened_at(&format!("f = {f:.3} Hz"), &axes().iter().map(point).collect::<Vec<_>>());
     }
     h
 }
@@ -142,16 +143,16 @@ fn appendage(body: &BodyFact, place: &str, grid: &[f64]) -> Hypothesis {
         vec![Coordinate::log("frequency", 0.1, [5e-3, 20.0]), Coordinate::log("damping", 0.01, [1e-4, 1.0])];
     coordinates.extend((0..3).map(|k| Coordinate::free(COUPLING[k], 0.0)));
     let mut h = hypothesis("flexible-appendage", place, coordinates);
-    let size = (0.02 * body.inertia.trace() / 3.0).sqrt();
+    h.is_dear = true;
+    let size = (0.01 * body.inertia.trace() / 3.0).sqrt();
     for f in grid {
-        for axis in axes() {
-            let mut point = h.neutral();
-            point[0] = f.ln();
-            (0..3).for_each(|k| point[2 + k] = size * axis[k]);
-            let label = format!("f = {f:.3} Hz along {:.1} {:.1} {:.1}", axis.x, axis.y, axis.z);
-            let column = Column { base: vec![0.0; 5], direction: point, step: 1.0, secant: true };
-            h.screens.push(ScreenPoint { label, columns: vec![column] });
-        }
+        let point = |axis: &Vec3| {
+            let mut x = h.neutral();
+            x[0] = f.ln();
+            (0..3).for_each(|k| x[2 + k] = size * axis[k]);
+            x
+        };
+        h = h.clone().screened_at(&format!("f = {f:.3} Hz"), &axes().iter().map(point).collect::<Vec<_>>());
     }
     h
 }

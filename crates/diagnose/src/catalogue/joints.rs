@@ -44,7 +44,8 @@ fn add_springs(joint: &JointFact, place: &str, all: &mut Vec<Hypothesis>) {
         all.push(
             hypothesis("joint-elasticity", place, series)
                 .encoded(Encoding::Compliance)
-                .screened_at(&format!("k = {k:.0}"), &[vec![1.0 / k, d], vec![1.0 / k, 3.0 * d]]),
+                .screened_at(&format!("k = {k:.0}"), &[vec![1.0 / k, d], vec![1.0 / k, 3.0 * d]])
+                .dear(),
         );
         let gap = vec![
             Coordinate::log("gap", 5e-4, [1e-6, 0.1]),
@@ -52,7 +53,11 @@ fn add_springs(joint: &JointFact, place: &str, all: &mut Vec<Hypothesis>) {
             Coordinate::level("d", d),
         ];
         let at = |gap: f64| vec![gap.ln(), k.ln(), d];
-        all.push(hypothesis("joint-backlash", place, gap).screened_at(&format!("k = {k:.0}"), &[at(3e-4), at(1.5e-3)]));
+        all.push(
+            hypothesis("joint-backlash", place, gap)
+                .screened_at(&format!("k = {k:.0}"), &[at(3e-4), at(1.5e-3)])
+                .dear(),
+        );
     }
 }
 

@@ -32,6 +32,8 @@ fn hypothesis(name: &'static str, place: &str, coordinates: Vec<Coordinate>) -> 
         encoding: Encoding::Direct,
         screens: Vec::new(),
         tier: Tier::Exotic,
+        held: Vec::new(),
+        is_dear: false,
     }
 }
 
@@ -43,6 +45,11 @@ impl Hypothesis {
 
     fn nominal_number(mut self) -> Self {
         self.tier = Tier::Nominal;
+        self
+    }
+
+    fn dear(mut self) -> Self {
+        self.is_dear = true;
         self
     }
 

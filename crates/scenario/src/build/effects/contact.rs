@@ -29,7 +29,8 @@ pub(super) fn apply(entry: &Entry<'_>, parts: &mut Parts, faults: &mut Faults<'_
         let mut moved: Vec<usize> = sites.iter().map(|s| part_of(s, parts, 1)).collect();
         moved.sort_unstable();
         moved.dedup();
-        return moved.into_iter().for_each(|shape| move_part(entry, parts, shape));
+        let is_alone = moved.len() == 1;
+        return moved.into_iter().for_each(|shape| move_part(entry, parts, shape, is_alone));
     }
     for site in sites {
         let grain = grain_of(entry, parts, &site);
@@ -156,14 +157,15 @@ fn grain_of(entry: &Entry<'_>, parts: &Parts, site: &ContactSite) -> Grain {
     Grain { on_b: !site.is_swapped, axis, angle: entry.number("angle") }
 }
 
-/// Moves a part in its link's axes, by the turn `angle` (a rotation vector) about its origin and by `offset`.
-fn move_part(entry: &Entry<'_>, parts: &mut Parts, shape: usize) {
+/// Moves a part in its link's axes, by the turn `angle` (a rotation vector) about its origin and by `offset`. What consists
+/// of several shapes turns about the link's origin, so that they keep together.
+fn move_part(entry: &Entry<'_>, parts: &mut Parts, shape: usize, is_alone: bool) {
     let (offset, angle) = (entry.vector("offset"), entry.vector("angle"));
     if offset == Vec3::zeros() && angle == Vec3::zeros() {
         return;
     }
     let part = &mut parts.shapes[shape];
-    let origin = part.pose_ls * nalgebra::Point3::from(origin_of(&part.shape));
+    let origin = if is_alone { part.pose_ls * nalgebra::Point3::from(origin_of(&part.shape)) } else { Default::default() };
     let turn = nalgebra::UnitQuaternion::from_scaled_axis(angle);
     let about = |p: Vec3| Pose::from_parts(p.into(), nalgebra::UnitQuaternion::identity());
     let turned = Pose::from_parts((origin.coords + offset).into(), turn);

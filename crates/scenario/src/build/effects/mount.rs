@@ -14,8 +14,8 @@ use crate::effects::PlaceKind;
 use sim::{ActuatorKind, Effect, EffectKind, JointEffect, JointLaw};
 use spatial::{Inertia, Mat3, Pose, Vec3, nalgebra};
 
-/// Mass of a tip of which nothing is said, kg.
-const TIP_MASS: f64 = 4.0;
+/// Mass of a tip of which nothing is said, kg: a probe's ball with a piece of its rod.
+const TIP_MASS: f64 = 0.8;
 
 /// Adds the mount that an entry asks for. It numbers coordinates and bodies anew, so it comes before all other effects.
 pub(super) fn add(entry: &Entry<'_>, parts: &mut Parts, faults: &mut Faults<'_>) {

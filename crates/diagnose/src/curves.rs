@@ -1,0 +1,116 @@
+//! Curves of the evidence: channels that matter, and the missing force over time.
+
+use crate::evidence::{Curve, MissingForce};
+use crate::fit::Fit;
+use crate::linear::Stage;
+use crate::reading::Value;
+use crate::run::Findings;
+use crate::tell::role;
+use record::{ChannelName, Role};
+
+/// Most channels drawn.
+const CHANNELS: usize = 6;
+
+/// One scalar of a run's windows.
+struct Sample {
+    /// Reading and component.
+    channel: (usize, usize),
+    time: f64,
+    measured: f64,
+    /// Prediction less measurement, units of noise.
+    residual: f64,
+}
+
+/// The channels of one run that differ most, measured and predicted in windows.
+pub(crate) fn curves(findings: &Findings, stage: &Stage<'_>) -> Vec<Curve> {
+    let Some(run) = stage.tapes.iter().position(|t| t.role == Role::Holdout).or((!stage.tapes.is_empty()).then_some(0))
+    else {
+        return Vec::new();
+    };
+    let [nominal, corrected] = findings.judgement.windowed.each_ref().map(|fit| samples(stage, fit, run));
+    let tape = &stage.tapes[run];
+    let mut channels: Vec<((usize, usize), f64)> = Vec::new();
+    for sample in &nominal {
+        match channels.iter_mut().find(|c| c.0 == sample.channel) {
+            Some(channel) => channel.1 += sample.residual.powi(2),
+            None => channels.push((sample.channel, sample.residual.powi(2))),
+        }
+    }
+    channels.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let curve = |(r, k): (usize, usize)| {
+        let reading = &tape.readings[r];
+        let of = |all: &[Sample], f: &dyn Fn(&Sample) -> f64| -> Vec<f64> {
+            all.iter().filter(|s| s.channel == (r, k)).map(f).collect()
+        };
+        let predicted = |s: &Sample| s.measured + s.residual * reading.sigma;
+        let channel = reading.component(k);
+        Curve {
+            run: tape.file.clone(),
+            role: role(tape.role),
+            unit: ChannelName::parse(&channel).map_or_else(String::new, |name| name.quantity.unit().to_owned()),
+            channel,
+            sigma: reading.sigma,
+            window_s: Some(findings.window),
+            t: of(&nominal, &|s| s.time),
+            measured: of(&nominal, &|s| s.measured),
+            nominal: of(&nominal, &predicted),
+            corrected: if findings.found.set.members.is_empty() { Vec::new() } else { of(&corrected, &predicted) },
+        }
+    };
+    channels.into_iter().take(CHANNELS).map(|(c, _)| curve(c)).collect()
+}
+
+/// Scalars of a run's windows; orientations have no curve.
+fn samples(stage: &Stage<'_>, fit: &Fit, run: usize) -> Vec<Sample> {
+    let tape = &stage.tapes[run];
+    let mut all = Vec::new();
+    for segment in fit.segments.iter().filter(|s| s.run == run) {
+        let r = stage.residuals(&fit.built, segment);
+        let range = tape.range(segment.span);
+        for i in range.clone() {
+            let event = &tape.events[i];
+            let reading = &tape.readings[event.reading as usize];
+            let first = tape.offsets[i] - tape.offsets[range.start];
+            if let Value::Vector(v) = reading.values[event.sample as usize] {
+                let at = |(k, axis): (usize, &usize)| Sample {
+                    channel: (event.reading as usize, k),
+                    time: event.time,
+                    measured: v[*axis],
+                    residual: r[first + k],
+                };
+                all.extend(reading.axes.iter().enumerate().map(at));
+            }
+        }
+    }
+    all
+}
+
+/// Most places drawn.
+const PLACES: usize = 2;
+
+/// The missing force of the places where most of it acts: its mean over each window of the first run that was fitted.
+pub(crate) fn forces(findings: &Findings, stage: &Stage<'_>) -> Vec<MissingForce> {
+    let (located, segments) = (&findings.located, &findings.nominal.segments);
+    let Some(run) = segments.first().map(|s| s.run) else { return Vec::new() };
+    let windows: Vec<usize> = (0..segments.len()).filter(|i| segments[*i].run == run).collect();
+    let mut all = Vec::new();
+    for p in located.ranked().into_iter().filter(|p| located.share(*p) > 0.01).take(PLACES) {
+        let place = &located.places[p];
+        for (c, (label, ..)) in place.columns.iter().enumerate().filter(|(_, c)| c.0.ends_with("constant")) {
+            let of = |f: &dyn Fn(&crate::locate::WindowForce) -> f64| -> Vec<f64> {
+                windows.iter().map(|i| f(&located.windows[*i][p])).collect()
+            };
+            all.push(MissingForce {
+                place: place.name.clone(),
+                freedom: label.trim_end_matches("constant").trim().to_owned(),
+                unit: if label.starts_with("force") { "N".to_owned() } else { "N m".to_owned() },
+                run: stage.tapes[run].file.clone(),
+                t: windows.iter().map(|i| 0.5 * (segments[*i].span.from + segments[*i].span.to)).collect(),
+                estimate: of(&|w| w.estimate[c]),
+                std_err: of(&|w| w.error[c]),
+                law: None,
+            });
+        }
+    }
+    all
+}

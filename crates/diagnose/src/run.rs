@@ -1,0 +1,202 @@
+//! The whole diagnosis: from a scenario and a recording to a verdict with its evidence.
+//!
+//! 1. the recording is inspected, its channels are matched with the scenario's quantities;
+//! 2. starts are estimated in windows, the nominal model is judged there;
+//! 3. missing forces say where, the search says what, first in windows, then over whole runs where these follow;
+//! 4. every run, held-out ones too, is predicted by the nominal and by the corrected model.
+
+use crate::catalogue::hypotheses;
+use crate::diagnosis::{Diagnosis, Verdict};
+use crate::error::DiagnoseError;
+use crate::evidence::Evidence;
+use crate::facts::Facts;
+use crate::fit::{EffectSet, Effort, Fit, fit};
+use crate::guess::guess;
+use crate::hypothesis::Hypothesis;
+use crate::judge::{Judgement, judge};
+use crate::linear::{Segment, Stage, windows};
+use crate::locate::{Located, locate, places};
+use crate::plant::Plant;
+use crate::replay::{Pace, Span};
+use crate::search::{Attempt, Limits, is_significant, search};
+use crate::tape::Tape;
+use crate::tell;
+use record::{RecordingSet, Role, Severity};
+use scenario::Scenario;
+use std::time::Instant;
+
+/// What the search left to judge and to tell.
+pub(crate) struct Findings {
+    pub title: String,
+    pub window: f64,
+    pub located: Located,
+    pub nominal: Fit,
+    pub found: Fit,
+    pub attempts: Vec<Attempt>,
+    pub verdict: Verdict,
+    pub judgement: Judgement,
+    pub timings: Vec<(String, f64)>,
+}
+
+/// Limits of the search.
+const LIMITS: Limits = Limits { effects: 3, refits: 4, sigmas: 4.0 };
+/// Fit of starts alone.
+const STARTS: Effort = Effort { iterations: 6, share: 1e-4 };
+/// Share of the mismatch that may be left for a verdict of "partly explained".
+const PARTLY: f64 = 0.1;
+
+/// Diagnoses; `tell_stage` hears the name of each stage and the share of the work that is done when it begins.
+pub fn diagnose(
+    scenario: Scenario,
+    set: &RecordingSet,
+    tell_stage: &dyn Fn(&str, f64),
+) -> Result<(Diagnosis, Evidence), DiagnoseError> {
+    let mut clock = Clock { begun: Instant::now(), timings: Vec::new(), tell: tell_stage };
+    clock.stage("inspect the recording", 0.0);
+    let inspection = record::inspect::inspect(set);
+    refuse_foreign(&inspection)?;
+    let mut plant = Plant::new(scenario);
+    let tapes = load(&mut plant, set)?;
+    let window = window_of(&set.rig, &tapes);
+    let stage = Stage { tapes: &tapes, pace: Pace { step: plant.scenario.integrator.step_s } };
+    clock.stage("fit the starts of the nominal model", 0.05);
+    let built = plant.build(&[])?;
+    let segments = cut(&built, &tapes, Some(window), |t| t.role == Role::Fit);
+    let nominal = fit(&stage, &plant, EffectSet::default(), segments, STARTS)?;
+    clock.stage("locate the missing force", 0.15);
+    let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
+    clock.stage("search in windows", 0.25);
+    let candidates = |now: &Fit| promising(&located, hypotheses(&Facts::new(&now.built, &tapes)));
+    let (in_windows, mut attempts) = search(&stage, &plant, nominal.clone(), &candidates, &LIMITS)?;
+    clock.stage("search over whole runs", 0.6);
+    let whole = fit(&stage, &plant, in_windows.set.clone(), joined(&in_windows, &tapes), STARTS)?;
+    let follows = whole.rms() < DIVERGED;
+    let (found, more) =
+        if follows { search(&stage, &plant, whole, &candidates, &LIMITS)? } else { (in_windows, Vec::new()) };
+    attempts.extend(more);
+    clock.stage("predict every run", 0.85);
+    let judgement = judge(&stage, &plant, &found.set, window)?;
+    clock.stage("write", 1.0);
+    let findings = Findings {
+        title: set.title.clone(),
+        window,
+        verdict: verdict(&nominal, &found),
+        located,
+        nominal,
+        found,
+        attempts,
+        judgement,
+        timings: clock.timings,
+    };
+    Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
+}
+
+/// Root mean square over whole runs beyond which they do not follow the model at all, and windows judge.
+const DIVERGED: f64 = 300.0;
+
+struct Clock<'a> {
+    begun: Instant,
+    timings: Vec<(String, f64)>,
+    tell: &'a dyn Fn(&str, f64),
+}
+
+impl Clock<'_> {
+    fn stage(&mut self, name: &str, share: f64) {
+        let now = self.begun.elapsed().as_secs_f64();
+        if let Some(last) = self.timings.last_mut() {
+            last.1 = now - last.1;
+        }
+        self.timings.push((name.to_owned(), now));
+        (self.tell)(name, share);
+    }
+}
+
+/// Data that contradict themselves cannot judge a model.
+fn refuse_foreign(inspection: &record::inspect::Inspection) -> Result<(), DiagnoseError> {
+    let faults: Vec<String> =
+        inspection.remarks.iter().filter(|r| r.severity == Severity::Fault).map(|r| r.what.clone()).collect();
+    if faults.is_empty() { Ok(()) } else { Err(DiagnoseError::Foreign(faults.join("; "))) }
+}
+
+/// The runs, and the plant told what is read and driven.
+fn load(plant: &mut Plant, set: &RecordingSet) -> Result<Vec<Tape>, DiagnoseError> {
+    let built = plant.build(&[])?;
+    let tapes: Vec<Tape> = set.runs.iter().map(|run| Tape::new(set, run, &built)).collect::<Result<_, _>>()?;
+    let mut channels: Vec<String> = tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.channel.clone())).collect();
+    channels.sort();
+    channels.dedup();
+    plant.attach(set, &built.model, channels)?;
+    let built = plant.build(&[])?;
+    let unread = tapes.iter().flat_map(|t| t.readings.iter().map(move |r| (t, r)));
+    for (tape, reading) in unread {
+        if built.sensor(&reading.channel).is_none() {
+            return Err(DiagnoseError::Channel {
+                channel: reading.channel.clone(),
+                file: tape.file.clone(),
+                reason: "the scenario has no sensor of that name; add a [[sensor]], or drop the column".to_owned(),
+            });
+        }
+        if reading.sigma <= 0.0 {
+            return Err(DiagnoseError::Channel {
+                channel: reading.channel.clone(),
+                file: tape.file.clone(),
+                reason: "its noise is not known; give it in [noise] of recording.toml (softdock inspect estimates it)"
+                    .to_owned(),
+            });
+        }
+    }
+    Ok(tapes)
+}
+
+/// Window in which a rig's predictions are judged, s; elsewhere a twentieth of a run.
+fn window_of(rig: &str, tapes: &[Tape]) -> f64 {
+    let longest = tapes.iter().map(|t| t.span.1 - t.span.0).fold(0.0, f64::max);
+    match rig {
+        "tumbler" => 30.0,
+        "air-table" => 2.0,
+        "stick-slip" => 1.0,
+        "arm-bench" | "dock-impact" => 0.5,
+        _ => longest / 20.0,
+    }
+}
+
+/// Windows of some runs, with guessed starts.
+pub(crate) fn cut(
+    built: &crate::plant::Built,
+    tapes: &[Tape],
+    window: Option<f64>,
+    wanted: impl Fn(&Tape) -> bool,
+) -> Vec<Segment> {
+    let runs = (0..tapes.len()).filter(|r| wanted(&tapes[*r]));
+    let spans = runs.flat_map(|run| windows(&tapes[run], window).into_iter().map(move |span| (run, span)));
+    spans.map(|(run, span)| Segment { run, span, start: guess(built, &tapes[run], span.from) }).collect()
+}
+
+/// Whole runs, from the starts of their first windows.
+pub(crate) fn joined(fit: &Fit, tapes: &[Tape]) -> Vec<Segment> {
+    let first = fit.segments.iter().filter(|s| s.span.from == tapes[s.run].span.0);
+    first.map(|s| Segment { span: Span { from: s.span.from, to: tapes[s.run].span.1 }, ..s.clone() }).collect()
+}
+
+/// Effects at joints where no force is missing are not looked at: an arm has many places.
+fn promising(located: &Located, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {
+    let best = located.ranked().first().map_or(0.0, |p| located.share(*p));
+    let is_dull = |place: &str| {
+        let at = located.places.iter().position(|p| p.name == place);
+        place.starts_with("joint:") && at.is_some_and(|p| located.share(p) < DULL * best)
+    };
+    all.retain(|h| !is_dull(&h.place));
+    all
+}
+
+/// Share of the best place's below which a joint is dull.
+const DULL: f64 = 0.15;
+
+fn verdict(nominal: &Fit, found: &Fit) -> Verdict {
+    if !is_significant(found, &LIMITS) {
+        return if found.set.members.is_empty() { Verdict::NoMismatch } else { Verdict::Explained };
+    }
+    let left = found.excess() / found.count as f64;
+    let before = nominal.excess().max(found.excess()) / nominal.count as f64;
+    if !found.set.members.is_empty() && left < PARTLY * before { Verdict::PartlyExplained } else { Verdict::Unknown }
+}

@@ -1,0 +1,263 @@
+//! From findings to the diagnosis and its evidence.
+
+use crate::diagnosis::{
+    BeforeAfter, Diagnosis, Errors, FORMAT, Found, Located as LocatedPlace, Rival, Role, RunError, StdErr, Verdict,
+};
+use crate::evidence::{
+    self, Evidence, Heat, HeatRow, Hypothesis, Level, Parameter, Remark, Status, bin_edges, mean_squares,
+};
+use crate::fit::Fit;
+use crate::linear::{Segment, Stage};
+use crate::run::Findings;
+use crate::vocabulary::unit;
+use nalgebra::DMatrix;
+use record::inspect::Inspection;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Both of them.
+pub(crate) fn tell(
+    findings: &Findings,
+    stage: &Stage<'_>,
+    inspection: &Inspection,
+    scenario: &str,
+    folder: &Path,
+) -> (Diagnosis, Evidence) {
+    let effects = if findings.verdict == Verdict::Unknown { Vec::new() } else { effects(findings) };
+    let recording = folder.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let diagnosis = Diagnosis {
+        format: FORMAT,
+        scenario: scenario.to_owned(),
+        recording,
+        verdict: findings.verdict,
+        located: located(findings, stage),
+        effects,
+        error: errors(findings, stage),
+        remarks: inspection
+            .remarks
+            .iter()
+            .filter(|r| r.severity > record::Severity::Note)
+            .map(|r| r.what.clone())
+            .collect(),
+    };
+    let evidence = Evidence {
+        title: findings.title.clone(),
+        quality: inspection.remarks.iter().map(quality).collect(),
+        discretisation: None,
+        heat: heat(findings, stage),
+        curves: crate::curves::curves(findings, stage),
+        forces: crate::curves::forces(findings, stage),
+        ranking: ranking(findings),
+        parameters: parameters(findings),
+        correlation: correlation(&findings.found.covariance),
+        timings: findings
+            .timings
+            .iter()
+            .map(|(name, wall)| evidence::Stage { name: name.clone(), wall_s: *wall, simulated_s: f64::NAN })
+            .collect(),
+        ..Evidence::default()
+    };
+    (diagnosis, evidence)
+}
+
+fn quality(remark: &record::Remark) -> Remark {
+    let level = match remark.severity {
+        record::Severity::Note => Level::Note,
+        record::Severity::Warning => Level::Warning,
+        record::Severity::Fault => Level::Serious,
+    };
+    let subject = remark.channel.clone().or_else(|| remark.run.clone()).unwrap_or_default();
+    Remark { level, subject, text: remark.what.clone() }
+}
+
+/// Covariance of one member's coordinates; those that were held have none.
+fn covariance_of(fit: &Fit, member: usize) -> DMatrix<f64> {
+    let slots = fit.set.slots();
+    let n = fit.set.members[member].0.coordinates.len();
+    let at = |k: usize| slots.iter().position(|s| *s == (member, k));
+    DMatrix::from_fn(n, n, |i, j| match (at(i), at(j)) {
+        (Some(i), Some(j)) => fit.covariance.get((i, j)).copied().unwrap_or(0.0),
+        _ => 0.0,
+    })
+}
+
+fn effects(findings: &Findings) -> Vec<Found> {
+    let fit = &findings.found;
+    let of = |(m, (h, x)): (usize, &(crate::hypothesis::Hypothesis, Vec<f64>))| {
+        let effect = h.effect(x);
+        let held = |key: &str| fit.set.held.iter().any(|(n, k)| *n == m && h.coordinates[*k].key == key);
+        let mut std_err: BTreeMap<String, StdErr> = BTreeMap::new();
+        for (key, error) in h.errors(x, &covariance_of(fit, m)) {
+            let value = if held(key) || error <= 0.0 { f64::INFINITY } else { error };
+            match key.split_once('[') {
+                None => {
+                    std_err.insert(key.to_owned(), StdErr::one(value));
+                }
+                Some((name, _)) => {
+                    let slot = std_err.entry(name.to_owned()).or_insert_with(|| StdErr::each(&[]));
+                    if let StdErr::Each(values) = slot {
+                        values.push(value.is_finite().then_some(value));
+                    }
+                }
+            }
+        }
+        Found { name: effect.name, place: effect.place, params: effect.params, std_err, rivals: rivals(findings, h) }
+    };
+    fit.set.members.iter().enumerate().map(of).collect()
+}
+
+/// Hypotheses whose refit came near the chosen one's in the round in which it was chosen.
+fn rivals(findings: &Findings, chosen: &crate::hypothesis::Hypothesis) -> Vec<Rival> {
+    let is_chosen = |a: &crate::search::Attempt| a.kept && a.name == chosen.name && a.place == chosen.place;
+    let Some(own) = findings.attempts.iter().find(|a| is_chosen(a)) else { return Vec::new() };
+    let Some(gain) = own.gain else { return Vec::new() };
+    let same_round = findings.attempts.iter().filter(|a| a.round == own.round && !is_chosen(a));
+    let near =
+        same_round.filter_map(|a| a.gain.map(|g| (a, gain - g))).filter(|(_, gap)| *gap < (0.05 * gain).max(10.0));
+    near.map(|(a, gap)| Rival { name: a.name.clone(), place: a.place.clone(), score_gap: gap }).collect()
+}
+
+fn located(findings: &Findings, stage: &Stage<'_>) -> Vec<LocatedPlace> {
+    let end = stage.tapes.iter().map(|t| t.span.1).fold(0.0, f64::max);
+    let place = |name: String, share: f64, condition: &str| LocatedPlace {
+        place: name,
+        share,
+        from_s: 0.0,
+        to_s: end,
+        condition: condition.to_owned(),
+    };
+    let by_force = || {
+        let all = &findings.located;
+        all.ranked().into_iter().take(4).map(|p| (all.places[p].name.clone(), all.share(p))).collect::<Vec<_>>()
+    };
+    match findings.verdict {
+        Verdict::NoMismatch => Vec::new(),
+        Verdict::Unknown => by_force().into_iter().map(|(n, s)| place(n.clone(), s, condition_of(&n))).collect(),
+        _ => {
+            let kept = findings.attempts.iter().filter(|a| a.kept);
+            kept.map(|a| place(a.place.clone(), a.share.clamp(0.0, 1.0), condition_of(&a.place))).collect()
+        }
+    }
+}
+
+fn condition_of(place: &str) -> &'static str {
+    if place.starts_with("contact:") { "in contact" } else { "always" }
+}
+
+fn errors(findings: &Findings, stage: &Stage<'_>) -> Errors {
+    let judgement = &findings.judgement;
+    let pair = |[before, after]: [f64; 2]| BeforeAfter { before, after };
+    let of_role = |windowed: bool, role: record::Role| judgement.rms_of(stage, windowed, role).map(pair);
+    let run = |(i, tape): (usize, &crate::tape::Tape)| {
+        let [before, after] = judgement.rms(stage, false, |r| r == i);
+        let [windowed_before, windowed_after] = judgement.rms(stage, true, |r| r == i);
+        RunError { file: tape.file.clone(), role: role(tape.role), before, after, windowed_before, windowed_after }
+    };
+    let none = BeforeAfter { before: f64::NAN, after: f64::NAN };
+    Errors {
+        fit: of_role(false, record::Role::Fit).unwrap_or(none),
+        holdout: of_role(false, record::Role::Holdout),
+        window_s: findings.window,
+        windowed: of_role(true, record::Role::Holdout).or_else(|| of_role(true, record::Role::Fit)).unwrap_or(none),
+        runs: stage.tapes.iter().enumerate().map(run).collect(),
+    }
+}
+
+pub(crate) fn role(role: record::Role) -> Role {
+    match role {
+        record::Role::Fit => Role::Fit,
+        record::Role::Holdout => Role::Holdout,
+    }
+}
+
+fn ranking(findings: &Findings) -> Vec<Hypothesis> {
+    let nan = |x: Option<f64>| x.filter(|x| x.is_finite()).unwrap_or(f64::NAN);
+    let of = |a: &crate::search::Attempt| Hypothesis {
+        name: a.name.clone(),
+        place: a.place.clone(),
+        screen_score: a.score,
+        freedoms: a.parameters,
+        share: a.share,
+        refit_fall: nan(a.fall),
+        bic_gain: nan(a.gain),
+        held_back_gain: f64::NAN,
+        status: match (a.kept, a.fall) {
+            (true, _) => Status::Chosen,
+            (false, Some(_)) => Status::Rejected,
+            (false, None) => Status::Screened,
+        },
+        why: format!("round {}", a.round + 1),
+    };
+    findings.attempts.iter().filter(|a| a.fall.is_some() || a.share > 0.01).map(of).collect()
+}
+
+fn parameters(findings: &Findings) -> Vec<Parameter> {
+    let fit = &findings.found;
+    let mut all = Vec::new();
+    for (m, (h, x)) in fit.set.members.iter().enumerate() {
+        let nominal = h.decode(&h.neutral());
+        let errors = h.errors(x, &covariance_of(fit, m));
+        for (((key, value), (_, error)), (_, before)) in h.decode(x).into_iter().zip(errors).zip(nominal) {
+            let std_err = if error > 0.0 { error } else { f64::INFINITY };
+            all.push(Parameter {
+                effect: h.name.to_owned(),
+                place: h.place.clone(),
+                name: key.to_owned(),
+                unit: unit(h.name, key.split('[').next().unwrap_or(key), false).to_owned(),
+                value,
+                nominal: before,
+                std_err,
+                interval: (value - 1.96 * std_err, value + 1.96 * std_err),
+                from_profile: false,
+            });
+        }
+    }
+    all
+}
+
+fn correlation(covariance: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    let n = covariance.nrows();
+    let of = |i: usize, j: usize| covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt().max(1e-300);
+    (0..n).map(|i| (0..n).map(|j| of(i, j)).collect()).collect()
+}
+
+/// Bins of a heat strip.
+const BINS: usize = 60;
+
+fn heat(findings: &Findings, stage: &Stage<'_>) -> Vec<Heat> {
+    let (windowed, tapes) = (&findings.judgement.windowed, stage.tapes);
+    let strip = |run: usize| {
+        let tape = &tapes[run];
+        let edges = bin_edges(tape.span.0, tape.span.1, BINS);
+        let samples = windowed.each_ref().map(|fit| squares(stage, fit, run));
+        let row = |(k, reading): (usize, &crate::reading::Reading)| {
+            let of = |m: usize| mean_squares(samples[m].iter().filter(|s| s.0 == k).map(|s| (s.1, s.2)), &edges);
+            HeatRow { channel: reading.channel.clone(), nominal: of(0), corrected: of(1) }
+        };
+        Heat {
+            run: tape.file.clone(),
+            role: role(tape.role),
+            window_s: Some(findings.window),
+            rows: tape.readings.iter().enumerate().map(row).collect(),
+            edges_s: edges,
+        }
+    };
+    (0..tapes.len()).map(strip).collect()
+}
+
+/// Reading, time and residual of every scalar of a run's windows.
+fn squares(stage: &Stage<'_>, fit: &Fit, run: usize) -> Vec<(usize, f64, f64)> {
+    let tape = &stage.tapes[run];
+    let mut all = Vec::new();
+    for segment in fit.segments.iter().filter(|s: &&Segment| s.run == run) {
+        let r = stage.residuals(&fit.built, segment);
+        let range = tape.range(segment.span);
+        for i in range.clone() {
+            let event = &tape.events[i];
+            let first = tape.offsets[i] - tape.offsets[range.start];
+            let width = tape.readings[event.reading as usize].width();
+            all.extend((first..first + width).map(|k| (event.reading as usize, event.time, r[k])));
+        }
+    }
+    all
+}
