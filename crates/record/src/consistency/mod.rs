@@ -6,7 +6,7 @@
 //!   ω(t) = C (y(t + τ) − b)      y: reading, ω: true rate, C ≈ 1 (3×3; 1×1 for a joint), b: bias, τ: delay
 //!
 //! is fitted to the measured positions by a filter whose state is the position error (driven by the rate's noise) and
-//! whose constants are C, b and τ ([`filter`]): every figure has its standard error, and the normalised innovations say
+//! whose constants are C, b and τ (`filter`): every figure has its standard error, and the normalised innovations say
 //! whether the pair is consistent at all. Signs as in the list of effects: reading = scale · true + bias, the reading at t
 //! belongs to t − delay, and the sensor is turned by the rotation vector `angle` in its nominal frame.
 //!
