@@ -85,8 +85,28 @@ fn dock_impact_03_mount_compliance() {
 }
 
 #[test]
+fn dock_impact_04_contact_damping_and_body_com() {
+    check_dock_impact("dock-impact-04");
+}
+
+#[test]
 fn dock_impact_05_null() {
     check_dock_impact("dock-impact-05");
+}
+
+#[test]
+fn air_table_01_linear_drag() {
+    check_air_table("air-table-01");
+}
+
+#[test]
+fn air_table_02_actuator_gain() {
+    check_air_table("air-table-02");
+}
+
+#[test]
+fn air_table_04_tilt() {
+    check_air_table("air-table-04");
 }
 
 #[test]
@@ -134,19 +154,5 @@ fn steps() {
                 );
             }
         }
-    }
-}
-
-#[test]
-#[ignore = "trace"]
-fn trace() {
-    let (name, k) = (std::env::var("SET").unwrap(), std::env::var("RUN").unwrap().parse::<usize>().unwrap());
-    let set = Set::read(&name).unwrap();
-    let (rig, file) = if name.starts_with("dock") { (DOCK_IMPACT, "dock-impact") } else { (AIR_TABLE, "air-table") };
-    let mut mission = build(&patched(&set, file, 1e-4));
-    let run = &set.runs[k];
-    let seen = rig.predict(&mut mission.world, run, Vec3::zeros());
-    for (t, s) in run.signals.times.iter().zip(&seen) {
-        println!("T {t} {} {} {} {} {} {}", s.force.x, s.force.y, s.force.z, s.torque.x, s.torque.y, s.torque.z);
     }
 }
