@@ -165,7 +165,8 @@ fn move_part(entry: &Entry<'_>, parts: &mut Parts, shape: usize, is_alone: bool)
         return;
     }
     let part = &mut parts.shapes[shape];
-    let origin = if is_alone { part.pose_ls * nalgebra::Point3::from(origin_of(&part.shape)) } else { Default::default() };
+    let origin =
+        if is_alone { part.pose_ls * nalgebra::Point3::from(origin_of(&part.shape)) } else { Default::default() };
     let turn = nalgebra::UnitQuaternion::from_scaled_axis(angle);
     let about = |p: Vec3| Pose::from_parts(p.into(), nalgebra::UnitQuaternion::identity());
     let turned = Pose::from_parts((origin.coords + offset).into(), turn);
