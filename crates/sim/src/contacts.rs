@@ -229,6 +229,7 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
         update_reach(model, ws, h);
         ws.detector.detect(&model.scene, &ws.frames, &ws.reach, &mut ws.points);
     }
+    keep_deepest(model, &mut ws.points);
     dead_weight::add_points(model, ws);
     for i in 0..ws.points.len() {
         let contact = ws.points[i];
@@ -310,6 +311,26 @@ fn remember(scene: &contact::Scene, memories: &[ContactMemory], touches: &mut [T
 /// Place of a point's memory in a sorted list.
 pub(crate) fn find_memory(memories: &[ContactMemory], pair: u32, feature: u64) -> Option<usize> {
     memories.binary_search_by(|m| (m.pair, m.feature).cmp(&(pair, feature))).ok()
+}
+
+/// Leaves one point to every pair whose law says so. A pair's points are neighbours in the list.
+fn keep_deepest(model: &Model, points: &mut Vec<contact::ContactPoint>) {
+    let mut kept = 0;
+    for i in 0..points.len() {
+        let mut own = points[i];
+        if model.laws[own.pair as usize].only_deepest {
+            own.feature = 0;
+            if let Some(last) = points[..kept].last_mut().filter(|last| last.pair == own.pair) {
+                if own.gap < last.gap {
+                    *last = own;
+                }
+                continue;
+            }
+        }
+        points[kept] = own;
+        kept += 1;
+    }
+    points.truncate(kept);
 }
 
 /// How the bodies turned between two moments.

@@ -82,12 +82,14 @@ pub struct PairLaw {
     pub pivot: Option<Pivot>,
     /// Direction along which the friction levels are meant, for a law that differs across it.
     pub grain: Option<Grain>,
+    /// Whether only the deepest point of the pair bears, under one identity wherever it moves to; else all of them do.
+    pub only_deepest: bool,
 }
 
 impl PairLaw {
     /// Laws of forces alone, without a grain.
     pub fn new(normal: Normal, friction: Option<Friction>) -> Self {
-        Self { normal, friction, pivot: None, grain: None }
+        Self { normal, friction, pivot: None, grain: None, only_deepest: false }
     }
 
     /// Whether its points have memory.

@@ -32,6 +32,7 @@ impl PairLaw {
             friction: self.friction.map(|f| f.weighted(w)),
             pivot: self.pivot.map(|p| Pivot { stiffness: w * p.stiffness, damping: w * p.damping, ..p }),
             grain: self.grain,
+            only_deepest: self.only_deepest,
         }
     }
 }

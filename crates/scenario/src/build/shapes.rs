@@ -6,7 +6,7 @@
 use super::beds;
 use super::faults::Faults;
 use super::laws::{pair_law, pivot_law};
-use crate::spec::{Grain, Scenario};
+use crate::spec::{Grain, PointRule, Scenario};
 use contact::Shape;
 use multibody::{Geometry, RobotDescription};
 use record::docking_of_geometry;
@@ -166,6 +166,7 @@ fn law_of_pair(scenario: &Scenario, vehicles: &[VehicleSpec], a: &Named, b: &Nam
         PairLaw {
             grain: grain.map(|(g, on_b)| grain_on(vehicles, if on_b { b } else { a }, g, on_b)),
             pivot,
+            only_deepest: rule.is_some_and(|r| r.points == PointRule::Deepest),
             ..pair_law(&law)
         }
     })

@@ -29,6 +29,26 @@ pub struct ContactRule {
     /// Resistance of every single point to spinning and rolling, where no patch of points carries it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pivot: Option<Pivot>,
+    /// Which of the pair's points bear.
+    #[serde(default, skip_serializing_if = "PointRule::is_all")]
+    pub points: PointRule,
+}
+
+/// Which of a pair's points bear.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum PointRule {
+    /// All that touch: a ball that sinks deep into a cone is held by eight points round it.
+    #[default]
+    All,
+    /// The deepest alone, as laws are meant that were measured or written for one point per pair.
+    Deepest,
+}
+
+impl PointRule {
+    fn is_all(&self) -> bool {
+        *self == Self::All
+    }
 }
 
 /// Lumped resistance to turning: moments up to a lever times the normal force.

@@ -23,7 +23,7 @@ mod vehicle;
 
 pub use actuator::{Actuator, ActuatorKind, Drive, DriveAxis, DriveMotion, JointDrive};
 pub use campaign::{Campaign, Disperse, Expect, Normal, Scalar, Uniform};
-pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw, Pivot};
+pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw, Pivot, PointRule};
 pub use effect::{Effect, ParamValue};
 pub use friction::{BristleFriction, Dahl, ElastoPlastic, FrictionLaw, LuGre, RegularisedCoulomb};
 pub use mechanism::{

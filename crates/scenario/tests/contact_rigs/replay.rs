@@ -79,7 +79,12 @@ impl Rig {
             let (q, v) = (&world.state().q, &world.state().v);
             let u = Vec3::new(q[0], q[1], q[2]);
             let force = stiffness * u + damping * Vec3::new(v[0], v[1], v[2]);
-            return (force, (Vec3::new(1.1, 0.0, 0.0) + u - self.sensor).cross(&force));
+            let at = world.frame(0);
+            let tip = Vec3::new(1.1, 0.0, 0.0) + u;
+            let tip_w = at.point(&tip);
+            // The tip hands on what the contact turns about it.
+            let turn: Vec3 = world.touches().map(|t| (t.point_w - tip_w).cross(&-t.force_w)).sum();
+            return (force, (tip - self.sensor).cross(&force) + at.rot.tr_mul(&turn));
         }
         let frame = world.frame(0);
         let at = frame.point(&self.sensor);
