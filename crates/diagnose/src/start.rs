@@ -180,13 +180,16 @@ fn dragged(world: &World, pair: usize, normal_force: f64, point: &Vec3) -> Vec3 
     slip / (slip.norm() + CRAWL) * law.calc_reach(normal_force, 0.0)
 }
 
+/// A freedom of a base by its vehicle and axis.
+type Kind = fn(usize, usize) -> Freedom;
+
 /// The coordinates of a start that are free in a model.
 pub fn freedoms(built: &Built, start: &Start) -> Vec<Freedom> {
     let model = &built.model;
     let mut all = Vec::new();
     for (b, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| !v.base.is_held()) {
         let mask = vehicle.base.mask();
-        let kinds: [(fn(usize, usize) -> Freedom, usize); 4] =
+        let kinds: [(Kind, usize); 4] =
             [(Freedom::Turn, 0), (Freedom::Place, 3), (Freedom::Spin, 0), (Freedom::Speed, 3)];
         for (kind, first) in kinds {
             all.extend((0..3).filter(|axis| mask[first + axis]).map(|axis| kind(b, axis)));

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// Recordings' folder, if this machine has one.
 pub fn recordings() -> Option<PathBuf> {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../../shared/recordings");
+    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/recordings");
     let folder = std::env::var_os("SOFTDOCK_RECORDINGS").map_or_else(|| PathBuf::from(beside), PathBuf::from);
     folder.join("practice").is_dir().then_some(folder.join("practice"))
 }

@@ -4,8 +4,11 @@ use scenario::spec::{Effect, ParamValue};
 use sim::State;
 use spatial::{Twist, Vec3};
 
+/// Name, neutral parameters, and the one that is then changed.
+type Beside = (&'static str, &'static [(&'static str, f64)], &'static str);
+
 /// Effects on the contact of dock-impact with their neutral parameters, and the one that is then changed.
-const EFFECTS: [(&str, &[(&str, f64)], &str); 10] = [
+const EFFECTS: [Beside; 10] = [
     ("contact-stiffness", &[("k", 3e6), ("n", 1.5)], "k"),
     ("contact-stiffness", &[("k", 3e6), ("n", 1.5)], "n"),
     ("contact-damping", &[("c", 6.0)], "c"),
