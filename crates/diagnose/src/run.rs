@@ -42,6 +42,8 @@ pub(crate) struct Findings {
 const LIMITS: Limits = Limits { effects: 3, refits: 4, sigmas: 4.0 };
 /// Fit of starts alone.
 const STARTS: Effort = Effort { iterations: 6, share: 1e-4, reuse: false };
+/// Error (units of noise) up to which a corrected model that leaves something is worth its name.
+const NEAR: f64 = 5.0;
 /// Share of the mismatch that may be left for a verdict of "partly explained".
 const PARTLY: f64 = 0.1;
 
@@ -200,5 +202,9 @@ fn verdict(nominal: &Fit, found: &Fit) -> Verdict {
     }
     let left = found.excess() / found.count as f64;
     let before = nominal.excess().max(found.excess()) / nominal.count as f64;
-    if !found.set.members.is_empty() && left < PARTLY * before { Verdict::PartlyExplained } else { Verdict::Unknown }
+    if !found.set.members.is_empty() && left < PARTLY * before && found.rms() < NEAR {
+        Verdict::PartlyExplained
+    } else {
+        Verdict::Unknown
+    }
 }

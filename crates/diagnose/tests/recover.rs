@@ -130,11 +130,28 @@ fn nothing_is_found_where_nothing_was_planted() {
     assert!(diagnosis.effects.is_empty() && diagnosis.located.is_empty());
 }
 
+fn wrong_inertia() -> Effect {
+    let inertia = vec![95.0, 160.0, 215.0, 1.5, -2.0, 0.8];
+    effect("body-inertia", "body:target", &[("inertia", ParamValue::Numbers(inertia))])
+}
+
+/// The recording that the README diagnoses; `SOFTDOCK_WRITE=1` writes it anew.
+#[test]
+fn the_shipped_recording_is_what_its_generator_makes() {
+    let shipped = root().join("tests/recordings/tumble-inertia");
+    let temporary = tempfile::tempdir().unwrap();
+    let folder = if std::env::var_os("SOFTDOCK_WRITE").is_some() { shipped.clone() } else { temporary.path().into() };
+    std::fs::create_dir_all(&folder).unwrap();
+    record_tumbler(&[wrong_inertia()], &folder);
+    for file in ["recording.toml", "run-0.csv", "run-1.csv", "run-2.csv"] {
+        let read = |folder: &Path| std::fs::read_to_string(folder.join(file)).unwrap();
+        assert_eq!(read(&folder).replace('\r', ""), read(&shipped).replace('\r', ""), "{file}");
+    }
+}
+
 #[test]
 fn a_wrong_inertia_is_found_again() {
-    let inertia = vec![95.0, 160.0, 215.0, 1.5, -2.0, 0.8];
-    let diagnosis =
-        diagnose_planted(&[effect("body-inertia", "body:target", &[("inertia", ParamValue::Numbers(inertia))])]);
+    let diagnosis = diagnose_planted(&[wrong_inertia()]);
     check(&diagnosis, "body-inertia", "body:target");
     for (k, truth) in [(1, 160.0), (2, 215.0), (3, 1.5), (4, -2.0), (5, 0.8)] {
         let found = value(&diagnosis, "inertia", k);

@@ -59,11 +59,10 @@ fn one_bristle_halves_the_error_of_lugre_on_the_measured_loop() {
 
 #[test]
 fn both_experiments_hold_and_draw() {
-    if recordings("both_experiments_hold_and_draw").is_none() {
-        return;
-    }
+    let Some(folder) = recordings("both_experiments_hold_and_draw") else { return };
     for name in ["cube-tosses", "fretting"] {
-        let outcome = (lab::find(name).unwrap().run)(&lab::Options { quick: true, ..lab::Options::default() }).unwrap();
+        let options = lab::Options { quick: true, data: Some(folder.clone()), ..lab::Options::default() };
+        let outcome = (lab::find(name).unwrap().run)(&options).unwrap();
         assert!(outcome.holds() && outcome.figures.len() > 10 && outcome.charts.len() == 2, "{name}");
         assert!(outcome.charts.iter().all(|c| !lab::chart_svg(c).contains("NaN")), "{name}");
         let recorded = outcome.run.is_some_and(|(log, _)| log.signals.times.len() > 80);

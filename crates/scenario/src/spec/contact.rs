@@ -30,7 +30,7 @@ pub struct ContactRule {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pivot: Option<Pivot>,
     /// Which of the pair's points bear.
-    #[serde(default, skip_serializing_if = "PointRule::is_all")]
+    #[serde(default)]
     pub points: PointRule,
 }
 
@@ -43,12 +43,6 @@ pub enum PointRule {
     All,
     /// The deepest alone, as laws are meant that were measured or written for one point per pair.
     Deepest,
-}
-
-impl PointRule {
-    fn is_all(&self) -> bool {
-        *self == Self::All
-    }
 }
 
 /// Lumped resistance to turning: moments up to a lever times the normal force.
