@@ -195,26 +195,8 @@ impl Tree {
     /// to the body's own inertia, which holds the rotor's mass. Returns the new joint's index.
     pub fn add_rotor(&mut self, body: usize, axis: &Vec3, inertia: f64, name: &str) -> usize {
         let axis = axis.normalize();
-        let column = self.n_columns();
-        self.joints.push(Joint {
-            name: name.to_owned(),
-            kind: JointKind::Revolute,
-            frame_pj: Frame::identity(),
-            axis,
-            column,
-            width: 1,
-            q_index: self.nq,
-            v_index: self.nv,
-            multiplier: 1.0,
-            offset: 0.0,
-            is_mimic: false,
-            position_limits: None,
-            effort_limit: f64::INFINITY,
-            velocity_limit: f64::INFINITY,
-            damping: 0.0,
-            friction: 0.0,
-            armature: 0.0,
-        });
+        let joint = self.bare_joint(name.to_owned(), JointKind::Revolute, Frame::identity(), axis);
+        self.joints.push(joint);
         self.nq += 1;
         self.nv += 1;
         self.q_zero.push(0.0);
@@ -227,6 +209,29 @@ impl Tree {
         self.joints.len() - 1
     }
 
+    /// A joint of one coordinate, behind all others, that nothing limits, damps or drives.
+    fn bare_joint(&self, name: String, kind: JointKind, frame_pj: Frame, axis: Vec3) -> Joint {
+        Joint {
+            name,
+            kind,
+            frame_pj,
+            axis,
+            column: self.n_columns(),
+            width: 1,
+            q_index: self.nq,
+            v_index: self.nv,
+            multiplier: 1.0,
+            offset: 0.0,
+            is_mimic: false,
+            position_limits: None,
+            effort_limit: f64::INFINITY,
+            velocity_limit: f64::INFINITY,
+            damping: 0.0,
+            friction: 0.0,
+            armature: 0.0,
+        }
+    }
+
     /// Adds a point mass (kg) that slides along the axes of a body near `place` (body axes, m): three joints without limits,
     /// `name`_x to `name`_z, and a link `name` at the place, with the body's axes. The body keeps its inertia. Returns the
     /// index of the first joint.
@@ -235,33 +240,17 @@ impl Tree {
         let mut parent = body;
         for (k, letter) in ["x", "y", "z"].into_iter().enumerate() {
             let pos = if k == 0 { *place } else { Vec3::zeros() };
-            self.joints.push(Joint {
-                name: format!("{name}_{letter}"),
-                kind: JointKind::Prismatic,
-                frame_pj: Frame { pos, ..Frame::identity() },
-                axis: Vec3::ith(k, 1.0),
-                column: self.n_columns(),
-                width: 1,
-                q_index: self.nq + k,
-                v_index: self.nv + k,
-                multiplier: 1.0,
-                offset: 0.0,
-                is_mimic: false,
-                position_limits: None,
-                effort_limit: f64::INFINITY,
-                velocity_limit: f64::INFINITY,
-                damping: 0.0,
-                friction: 0.0,
-                armature: 0.0,
-            });
+            let frame_pj = Frame { pos, ..Frame::identity() };
+            let joint = self.bare_joint(format!("{name}_{letter}"), JointKind::Prismatic, frame_pj, Vec3::ith(k, 1.0));
+            self.joints.push(joint);
+            self.nq += 1;
+            self.nv += 1;
+            self.q_zero.push(0.0);
             let own = if k == 2 { mass } else { 0.0 };
             let inertia = Inertia { mass: own, ..Inertia::default() };
             self.bodies.push(Body { parent, inertia });
             parent = self.bodies.len() - 1;
         }
-        self.nq += 3;
-        self.nv += 3;
-        self.q_zero.extend([0.0; 3]);
         let inertia = self.bodies[parent].inertia;
         self.links.push(Link { name: name.to_owned(), body: parent, frame_bl: Frame::identity(), inertia });
         first
