@@ -5,6 +5,13 @@
 //! `SOFTDOCK_RECORDINGS` names their folder, `../shared/recordings` beside the checkout by default.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+#[path = "keys/effects.rs"]
+mod effects;
+#[path = "keys/practice.rs"]
+mod practice;
+
+use effects::effects_toml;
+use practice::practice;
 use record::{RecordedRun, RecordingSet};
 use scenario::Mission;
 use serde_json::Value;
@@ -22,18 +29,6 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The practice sets, if they are here.
-fn practice() -> Option<PathBuf> {
-    let named = std::env::var_os("SOFTDOCK_RECORDINGS").filter(|folder| !folder.is_empty());
-    let folder = named.map_or_else(|| root().join("../shared/recordings"), PathBuf::from);
-    // The variable may also name what stands beside `practice`: `real`.
-    let found = [folder.join("practice"), folder.join("../practice")].into_iter().find(|dir| dir.is_dir());
-    if found.is_none() {
-        println!("SKIPPED: no recordings; set SOFTDOCK_RECORDINGS to the folder that holds practice/");
-    }
-    found
-}
-
 /// The rig's scenario with the effects of a key.
 fn mission(key: &Value, step: f64) -> Mission {
     let dir = tempfile::tempdir().unwrap();
@@ -41,12 +36,7 @@ fn mission(key: &Value, step: f64) -> Mission {
     let urdf = dir.path().join("arm.urdf");
     fs::write(&urdf, true_urdf(key)).unwrap();
     text = text.replace("../../robots/arm-bench/arm-bench.urdf", urdf.to_str().unwrap());
-    for effect in key["effects"].as_array().unwrap() {
-        text += &format!("\n[[effect]]\nname = {}\nplace = {}\n", effect["name"], effect["place"]);
-        for (name, value) in effect["params"].as_object().unwrap() {
-            text += &format!("{name} = {value}\n");
-        }
-    }
+    text += &effects_toml(key);
     let file = dir.path().join("arm.toml");
     fs::write(&file, text).unwrap();
     let spec = scenario::load(&file, &[format!("integrator.step_s={step}")]).unwrap_or_else(|e| panic!("{e}"));

@@ -6,6 +6,13 @@
 //! in `$SOFTDOCK_RECORDINGS`, or in `../shared/recordings` beside the checkout; where there are none, the test says so and passes.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+#[path = "keys/effects.rs"]
+mod effects;
+#[path = "keys/practice.rs"]
+mod practice;
+
+use effects::effects_toml;
+use practice::practice;
 use scenario::Mission;
 use serde_json::Value;
 use spatial::{Rot, Twist, Vec3, log_rotation, nalgebra};
@@ -16,22 +23,6 @@ const NOISE: [f64; 2] = [5e-4, 2e-4];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn recordings() -> Option<PathBuf> {
-    let named = std::env::var_os("SOFTDOCK_RECORDINGS").filter(|folder| !folder.is_empty());
-    let folder = named.map_or_else(|| root().join("../shared/recordings"), PathBuf::from);
-    // The variable may also name what stands beside `practice`: `real`.
-    [folder.join("practice"), folder.join("../practice")].into_iter().find(|dir| dir.is_dir())
-}
-
-/// One `[[effect]]` of a key as the scenario file has it.
-fn toml_of(effect: &Value) -> String {
-    let mut text = format!("\n[[effect]]\nname = {}\nplace = {}\n", effect["name"], effect["place"]);
-    for (name, value) in effect["params"].as_object().unwrap() {
-        text += &format!("{name} = {value}\n");
-    }
-    text
 }
 
 /// The rig with effects, in steps of `step` s.
@@ -131,14 +122,11 @@ fn calc_gap(a: &[(Rot, Vec3)], b: &[(Rot, Vec3)]) -> [f64; 2] {
 
 #[test]
 fn the_true_model_predicts_every_practice_run_to_the_noise() {
-    let Some(folder) = recordings() else {
-        println!("SKIPPED: no recordings; set SOFTDOCK_RECORDINGS to the folder that holds practice");
-        return;
-    };
+    let Some(folder) = practice() else { return };
     for set in 1..=5 {
         let key = std::fs::read_to_string(folder.join(format!("keys/tumbler-0{set}.json"))).unwrap();
         let key: Value = serde_json::from_str(&key).unwrap();
-        let effects: String = key["effects"].as_array().unwrap().iter().map(toml_of).collect();
+        let effects = effects_toml(&key);
         for entry in key["runs"].as_array().unwrap() {
             let file = entry["run"].as_str().unwrap();
             let start: Vec<f64> =

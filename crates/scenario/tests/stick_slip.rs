@@ -4,11 +4,17 @@
 //! says that it was skipped.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+#[path = "keys/effects.rs"]
+mod effects;
+#[path = "keys/practice.rs"]
+mod practice;
+
+use effects::effects_toml;
+use practice::practice;
 use record::Signals;
 use scenario::measure::Meter;
 use scenario::{Mission, build, parse};
-use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Sets whose keys name every effect, the kind of their files, and the step: the nominal one, but for the level that falls
 /// within 3 mm/s.
@@ -21,28 +27,6 @@ const CHANNELS: [(&str, f64, f64); 4] = [
     ("sensor.spring.force.x", 0.02, 1e-3),
     ("sensor.spring.force.y", 0.02, 1e-3),
 ];
-
-/// The practice sets, if they are here.
-fn practice() -> Option<PathBuf> {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/recordings");
-    let named = std::env::var_os("SOFTDOCK_RECORDINGS").filter(|folder| !folder.is_empty());
-    let folder = named.map_or_else(|| PathBuf::from(beside), PathBuf::from);
-    // The variable may also name what stands beside `practice`: `real`.
-    [folder.join("practice"), folder.join("../practice")].into_iter().find(|dir| dir.is_dir())
-}
-
-/// The `[[effect]]`s of a key as a scenario file has them.
-fn effects(key: &Path) -> String {
-    let key: Value = serde_json::from_str(&std::fs::read_to_string(key).unwrap()).unwrap();
-    let mut text = String::new();
-    for effect in key["effects"].as_array().unwrap() {
-        text += &format!("\n[[effect]]\nname = {}\nplace = {}\n", effect["name"], effect["place"]);
-        for (name, value) in effect["params"].as_object().unwrap() {
-            text += &format!("{name} = {value}\n");
-        }
-    }
-    text
-}
 
 /// The rig with effects, its stage driven by a recording.
 fn mission(effects: &str, step: &str, recording: &Path) -> Mission {
@@ -73,12 +57,10 @@ fn replay(mut mission: Mission, recording: &Signals) -> [f64; 2] {
 
 #[test]
 fn true_effects_predict_runs_to_the_noise() {
-    let Some(practice) = practice() else {
-        println!("SKIPPED: no recordings; set SOFTDOCK_RECORDINGS to the folder that holds practice/stick-slip-02");
-        return;
-    };
+    let Some(practice) = practice() else { return };
     for (set, kind, step) in SETS {
-        let effects = effects(&practice.join(format!("keys/stick-slip-{set}.json")));
+        let key = std::fs::read_to_string(practice.join(format!("keys/stick-slip-{set}.json"))).unwrap();
+        let effects = effects_toml(&serde_json::from_str(&key).unwrap());
         for run in [1, 5] {
             let file = practice.join(format!("stick-slip-{set}/run-0{run}.{kind}"));
             let recording = match kind {

@@ -1,16 +1,9 @@
 //! A set's answer key and its runs.
 
+use crate::practice::practice;
 use record::Signals;
 use serde_json::Value;
 use spatial::{Pose, Twist, Vec3, nalgebra};
-use std::path::PathBuf;
-
-/// Recordings' folder, if this machine has one.
-pub fn recordings() -> Option<PathBuf> {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/recordings");
-    let folder = std::env::var_os("SOFTDOCK_RECORDINGS").map_or_else(|| PathBuf::from(beside), PathBuf::from);
-    folder.join("practice").is_dir().then_some(folder.join("practice"))
-}
 
 /// One run: what was measured, and where the bodies truly started.
 pub struct Run {
@@ -29,10 +22,7 @@ pub struct Set {
 impl Set {
     /// Reads a set; `None`, loudly, where there are no recordings.
     pub fn read(name: &str) -> Option<Self> {
-        let Some(folder) = recordings() else {
-            println!("SKIPPED: no recordings; set SOFTDOCK_RECORDINGS to the folder that holds practice/{name}");
-            return None;
-        };
+        let folder = practice()?;
         let text = std::fs::read_to_string(folder.join("keys").join(format!("{name}.json"))).unwrap();
         let key: Value = serde_json::from_str(&text).unwrap();
         let run = |entry: &Value| {
