@@ -1,25 +1,16 @@
 //! Curves of the evidence: channels that matter, and the missing force over time.
 
 use crate::evidence::{Curve, MissingForce};
-use crate::fit::Fit;
+use crate::judge::Scalar;
 use crate::linear::Stage;
 use crate::reading::Value;
 use crate::run::Findings;
+use crate::tape::Tape;
 use crate::tell::role;
 use record::{ChannelName, Role};
 
 /// Most channels drawn.
 const CHANNELS: usize = 6;
-
-/// One scalar of a run's windows.
-struct Sample {
-    /// Reading and component.
-    channel: (usize, usize),
-    time: f64,
-    measured: f64,
-    /// Prediction less measurement, units of noise.
-    residual: f64,
-}
 
 /// The channels of one run that differ most, measured and predicted in windows.
 pub(crate) fn curves(findings: &Findings, stage: &Stage<'_>) -> Vec<Curve> {
@@ -27,22 +18,26 @@ pub(crate) fn curves(findings: &Findings, stage: &Stage<'_>) -> Vec<Curve> {
     else {
         return Vec::new();
     };
-    let [nominal, corrected] = findings.judgement.windowed.each_ref().map(|fit| samples(stage, fit, run));
     let tape = &stage.tapes[run];
+    let [nominal, corrected] = findings.judgement.windowed.each_ref().map(|p| {
+        let drawn = p.scalars(tape).into_iter().filter_map(|s| measured(tape, &s).map(|m| (s, m)));
+        drawn.collect::<Vec<(Scalar, f64)>>()
+    });
     let mut channels: Vec<((usize, usize), f64)> = Vec::new();
-    for sample in &nominal {
-        match channels.iter_mut().find(|c| c.0 == sample.channel) {
-            Some(channel) => channel.1 += sample.residual.powi(2),
-            None => channels.push((sample.channel, sample.residual.powi(2))),
+    for (scalar, _) in &nominal {
+        let own = (scalar.reading, scalar.component);
+        match channels.iter_mut().find(|c| c.0 == own) {
+            Some(channel) => channel.1 += scalar.residual.powi(2),
+            None => channels.push((own, scalar.residual.powi(2))),
         }
     }
     channels.sort_by(|a, b| b.1.total_cmp(&a.1));
     let curve = |(r, k): (usize, usize)| {
         let reading = &tape.readings[r];
-        let of = |all: &[Sample], f: &dyn Fn(&Sample) -> f64| -> Vec<f64> {
-            all.iter().filter(|s| s.channel == (r, k)).map(f).collect()
+        let of = |all: &[(Scalar, f64)], f: &dyn Fn(&(Scalar, f64)) -> f64| -> Vec<f64> {
+            all.iter().filter(|(s, _)| (s.reading, s.component) == (r, k)).map(f).collect()
         };
-        let predicted = |s: &Sample| s.measured + s.residual * reading.sigma;
+        let predicted = |(s, measured): &(Scalar, f64)| measured + s.residual * reading.sigma;
         let channel = reading.component(k);
         Curve {
             run: tape.file.clone(),
@@ -51,8 +46,8 @@ pub(crate) fn curves(findings: &Findings, stage: &Stage<'_>) -> Vec<Curve> {
             channel,
             sigma: reading.sigma,
             window_s: Some(findings.window),
-            t: of(&nominal, &|s| s.time),
-            measured: of(&nominal, &|s| s.measured),
+            t: of(&nominal, &|s| s.0.time),
+            measured: of(&nominal, &|s| s.1),
             nominal: of(&nominal, &predicted),
             corrected: if findings.found.set.members.is_empty() { Vec::new() } else { of(&corrected, &predicted) },
         }
@@ -60,29 +55,13 @@ pub(crate) fn curves(findings: &Findings, stage: &Stage<'_>) -> Vec<Curve> {
     channels.into_iter().take(CHANNELS).map(|(c, _)| curve(c)).collect()
 }
 
-/// Scalars of a run's windows; orientations have no curve.
-fn samples(stage: &Stage<'_>, fit: &Fit, run: usize) -> Vec<Sample> {
-    let tape = &stage.tapes[run];
-    let mut all = Vec::new();
-    for segment in fit.segments.iter().filter(|s| s.run == run) {
-        let r = stage.residuals(&fit.built, segment);
-        let range = tape.range(segment.span);
-        for i in range.clone() {
-            let event = &tape.events[i];
-            let reading = &tape.readings[event.reading as usize];
-            let first = tape.offsets[i] - tape.offsets[range.start];
-            if let Value::Vector(v) = reading.values[event.sample as usize] {
-                let at = |(k, axis): (usize, &usize)| Sample {
-                    channel: (event.reading as usize, k),
-                    time: event.time,
-                    measured: v[*axis],
-                    residual: r[first + k],
-                };
-                all.extend(reading.axes.iter().enumerate().map(at));
-            }
-        }
+/// What was measured; orientations have no curve.
+fn measured(tape: &Tape, scalar: &Scalar) -> Option<f64> {
+    let reading = &tape.readings[scalar.reading];
+    match reading.values[scalar.sample] {
+        Value::Vector(v) => Some(v[reading.axes[scalar.component]]),
+        Value::Rotation(_) => None,
     }
-    all
 }
 
 /// Most places drawn.

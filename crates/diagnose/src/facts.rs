@@ -1,11 +1,11 @@
 //! What the nominal model and the recording offer to hypotheses: places and nominal numbers.
 
 use crate::plant::Built;
-use crate::reading::Quantity;
 use crate::tape::Tape;
 use contact::{Normal, NormalLaw};
 use friction::Friction;
 use multibody::JointKind;
+use scenario::measure::Quantity;
 use sim::ActuatorKind;
 use spatial::{Mat3, Vec3};
 

@@ -116,6 +116,11 @@ pub struct Effort {
     pub reuse: bool,
 }
 
+impl Effort {
+    /// For starts alone.
+    pub const STARTS: Self = Self { iterations: 6, share: 1e-4, reuse: false };
+}
+
 /// Promised fall of the cost below which a fit has converged whatever its size.
 const NEXT_TO_NOTHING: f64 = 0.3;
 /// Most dampings tried for one linearisation.

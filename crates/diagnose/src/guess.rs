@@ -4,10 +4,11 @@
 //! vectors from the nearest sample. What nothing measures stays as the scenario has it.
 
 use crate::plant::Built;
-use crate::reading::{LinkPlace, Quantity, Reading, Value};
+use crate::reading::{Reading, Value};
 use crate::start::Start;
 use crate::tape::Tape;
 use nalgebra::{Matrix3, Vector3};
+use scenario::measure::Quantity;
 use spatial::{Rot, Twist, Vec3, exp_rotation, log_rotation};
 
 /// Samples that a guess looks at.
@@ -17,20 +18,20 @@ const NEAREST: usize = 15;
 pub fn guess(built: &Built, tape: &Tape, time: f64) -> Start {
     let mut start = Start { time, ..Start::nominal(built) };
     for (v, vehicle) in built.model.vehicles.iter().enumerate().filter(|(_, v)| !v.base.is_held()) {
-        let of_base = |p: LinkPlace| p.vehicle == v && vehicle.tree.links[p.link].body == 0 && p.link == 0;
+        let of_base = |of: usize, link: usize| of == v && link == 0;
         guess_base(&mut start, v, tape, time, of_base);
         mask_twist(&mut start.twists[v], &vehicle.base.mask());
     }
     for reading in &tape.readings {
         match reading.quantity {
-            Quantity::JointPosition { q, v } => {
+            Quantity::JointPosition(v) => {
                 let (x, rate) = fit_vector(reading, time);
-                start.q[q] = x.x;
-                if !tape.readings.iter().any(|r| r.quantity == Quantity::JointVelocity { q, v }) {
+                start.q[built.model.coordinates[v].q_index] = x.x;
+                if !tape.readings.iter().any(|r| r.quantity == Quantity::JointVelocity(v)) {
                     start.v[v] = rate.x;
                 }
             }
-            Quantity::JointVelocity { v, .. } => start.v[v] = fit_vector(reading, time).0.x,
+            Quantity::JointVelocity(v) => start.v[v] = fit_vector(reading, time).0.x,
             _ => {}
         }
     }
@@ -40,17 +41,17 @@ pub fn guess(built: &Built, tape: &Tape, time: f64) -> Start {
     start
 }
 
-fn guess_base(start: &mut Start, v: usize, tape: &Tape, time: f64, of_base: impl Fn(LinkPlace) -> bool) {
+fn guess_base(start: &mut Start, v: usize, tape: &Tape, time: f64, of_base: impl Fn(usize, usize) -> bool) {
     for reading in &tape.readings {
         match reading.quantity {
-            Quantity::Position(p) if of_base(p) => {
+            Quantity::Position(of, link) if of_base(of, link) => {
                 let (x, rate) = fit_vector(reading, time);
                 for &axis in &reading.axes {
                     start.bases[v].translation.vector[axis] = x[axis];
                     start.twists[v].lin[axis] = rate[axis];
                 }
             }
-            Quantity::Orientation(p) if of_base(p) => {
+            Quantity::Orientation(of, link) if of_base(of, link) => {
                 let (rot, rate) = fit_rotation(reading, time);
                 start.bases[v].rotation = rot;
                 start.twists[v].ang = rate;
@@ -60,11 +61,11 @@ fn guess_base(start: &mut Start, v: usize, tape: &Tape, time: f64, of_base: impl
     }
     for reading in &tape.readings {
         match reading.quantity {
-            Quantity::LinearVelocity(p) if of_base(p) => {
+            Quantity::LinearVelocity(of, link) if of_base(of, link) => {
                 let (x, _) = fit_vector(reading, time);
                 reading.axes.iter().for_each(|&axis| start.twists[v].lin[axis] = x[axis]);
             }
-            Quantity::AngularVelocity(p) if of_base(p) && reading.axes.len() == 3 => {
+            Quantity::AngularVelocity(of, link) if of_base(of, link) && reading.axes.len() == 3 => {
                 start.twists[v].ang = start.bases[v].rotation * fit_vector(reading, time).0;
             }
             _ => {}

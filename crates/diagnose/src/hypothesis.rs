@@ -48,8 +48,6 @@ pub enum Encoding {
     Ellipse,
     /// (a, b, …): amplitude √(a² + b²), phase atan2(b, a), of a scalar.
     Phasor,
-    /// (x, y, z, phase, ln f): amplitude vector.
-    Wave,
     /// The parameter's inverse first, then the others as they are.
     Compliance,
 }
@@ -192,7 +190,6 @@ impl Hypothesis {
                 out.extend(&plain[2..]);
                 out
             }
-            Encoding::Wave => plain,
             Encoding::Compliance => {
                 let mut out = vec![(plain[0].0, if value(0) > 0.0 { 1.0 / value(0) } else { f64::INFINITY })];
                 out.extend(&plain[1..]);

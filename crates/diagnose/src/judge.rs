@@ -5,54 +5,99 @@ use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::linear::Stage;
 use crate::plant::Plant;
 use crate::run::{cut, joined};
+use crate::tape::Tape;
+use nalgebra::DVector;
 use record::Role;
 
-/// Fits of the starts of all runs.
+/// A model with the starts that suit it best, and what its predictions are off by.
 #[derive(Clone, Debug)]
-pub struct Judgement {
-    /// In windows, nominal and corrected.
-    pub windowed: [Fit; 2],
-    /// Whole runs, nominal and corrected.
-    pub whole: [Fit; 2],
+pub struct Prediction {
+    /// The starts, segment by segment.
+    pub fit: Fit,
+    /// Residuals of each segment, units of noise.
+    pub residuals: Vec<DVector<f64>>,
 }
 
-/// Fit of starts alone.
-const STARTS: Effort = Effort { iterations: 6, share: 1e-4, reuse: false };
+/// Predictions of all runs by the nominal and by the corrected model.
+#[derive(Clone, Debug)]
+pub struct Judgement {
+    /// In windows.
+    pub windowed: [Prediction; 2],
+    /// Whole runs.
+    pub whole: [Prediction; 2],
+}
+
+/// One scalar of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scalar {
+    /// Index of the reading.
+    pub reading: usize,
+    /// Which of its samples.
+    pub sample: usize,
+    /// Which of its components.
+    pub component: usize,
+    /// When it was sampled, s.
+    pub time: f64,
+    /// Prediction less measurement, units of noise.
+    pub residual: f64,
+}
 
 /// Estimates the starts of every run under both models.
 pub fn judge(stage: &Stage<'_>, plant: &Plant, set: &EffectSet, window: f64) -> Result<Judgement, DiagnoseError> {
-    let of = |set: &EffectSet| -> Result<(Fit, Fit), DiagnoseError> {
+    let predict =
+        |fit: Fit| Prediction { residuals: fit.segments.iter().map(|s| stage.residuals(&fit.built, s)).collect(), fit };
+    let of = |set: &EffectSet| -> Result<(Prediction, Prediction), DiagnoseError> {
         let frozen =
             EffectSet { held: set.slots().into_iter().chain(set.held.iter().copied()).collect(), ..set.clone() };
         let built = plant.build(&frozen.effects())?;
         let segments = cut(&built, stage.tapes, Some(window), |_| true);
-        let windowed = fit(stage, plant, frozen.clone(), segments, STARTS)?;
-        let whole = fit(stage, plant, frozen, joined(&windowed, stage.tapes), STARTS)?;
-        Ok((windowed, whole))
+        let windowed = fit(stage, plant, frozen.clone(), segments, Effort::STARTS)?;
+        let whole = fit(stage, plant, frozen, joined(&windowed, stage.tapes), Effort::STARTS)?;
+        Ok((predict(windowed), predict(whole)))
     };
     let nominal = of(&EffectSet::default())?;
     let corrected = if set.members.is_empty() { nominal.clone() } else { of(set)? };
     Ok(Judgement { windowed: [nominal.0, corrected.0], whole: [nominal.1, corrected.1] })
 }
 
+impl Prediction {
+    /// Root mean square over some runs, units of noise.
+    fn rms(&self, wanted: impl Fn(usize) -> bool) -> f64 {
+        let of_wanted = self.fit.segments.iter().zip(&self.residuals).filter(|(s, _)| wanted(s.run));
+        let (cost, count) = of_wanted.fold((0.0, 0), |sum, (_, r)| (sum.0 + r.norm_squared(), sum.1 + r.len()));
+        (cost / count.max(1) as f64).sqrt()
+    }
+
+    /// Every scalar of a run, segment by segment, in the order of its samples.
+    pub fn scalars(&self, tape: &Tape) -> Vec<Scalar> {
+        let mut all = Vec::new();
+        for (segment, r) in self.fit.segments.iter().zip(&self.residuals).filter(|(s, _)| s.run == tape.index) {
+            let range = tape.range(segment.span);
+            for i in range.clone() {
+                let (event, first) = (&tape.events[i], tape.offsets[i] - tape.offsets[range.start]);
+                let reading = event.reading as usize;
+                all.extend((0..tape.readings[reading].width()).map(|component| Scalar {
+                    reading,
+                    sample: event.sample as usize,
+                    component,
+                    time: event.time,
+                    residual: r[first + component],
+                }));
+            }
+        }
+        all
+    }
+}
+
 impl Judgement {
     /// Root mean square of some runs, units of noise: nominal and corrected.
-    pub fn rms(&self, stage: &Stage<'_>, windowed: bool, wanted: impl Fn(usize) -> bool) -> [f64; 2] {
-        let fits = if windowed { &self.windowed } else { &self.whole };
-        [0, 1].map(|m| {
-            let of = |s: &crate::linear::Segment| {
-                let r = stage.residuals(&fits[m].built, s);
-                (r.norm_squared(), r.len())
-            };
-            let sums = fits[m].segments.iter().filter(|s| wanted(s.run)).map(of);
-            let (cost, count) = sums.fold((0.0, 0), |sum, p| (sum.0 + p.0, sum.1 + p.1));
-            (cost / count.max(1) as f64).sqrt()
-        })
+    pub fn rms(&self, windowed: bool, wanted: impl Fn(usize) -> bool) -> [f64; 2] {
+        let predictions = if windowed { &self.windowed } else { &self.whole };
+        predictions.each_ref().map(|p| p.rms(&wanted))
     }
 
     /// Root mean square over the runs of a role.
-    pub fn rms_of(&self, stage: &Stage<'_>, windowed: bool, role: Role) -> Option<[f64; 2]> {
-        let has = stage.tapes.iter().any(|t| t.role == role);
-        has.then(|| self.rms(stage, windowed, |run| stage.tapes[run].role == role))
+    pub fn rms_of(&self, tapes: &[Tape], windowed: bool, role: Role) -> Option<[f64; 2]> {
+        tapes.iter().any(|t| t.role == role).then(|| self.rms(windowed, |run| tapes[run].role == role))
     }
 }

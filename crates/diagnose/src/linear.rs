@@ -9,7 +9,6 @@
 //! H_ss is damped, so that a start that nothing shows stays put). Sums of K over segments hold everything that a step of a fit and a score
 //! test need.
 
-use crate::error::DiagnoseError;
 use crate::plant::Built;
 use crate::replay::{Pace, Span, residuals};
 use crate::start::{Freedom, Start, freedoms};
@@ -292,13 +291,4 @@ pub fn windows(tape: &Tape, length: Option<f64>) -> Vec<Span> {
     let count = length.map_or(1, |l| ((last - first) / l).round().max(1.0) as usize);
     let at = |i: usize| first + (last - first) * i as f64 / count as f64;
     (0..count).map(|i| Span { from: at(i), to: at(i + 1) }).collect()
-}
-
-/// An error where a run cannot be replayed at all.
-pub fn check_replay(stage: &Stage<'_>, built: &Built, segments: &[Segment]) -> Result<(), DiagnoseError> {
-    for segment in segments {
-        let tape = &stage.tapes[segment.run];
-        residuals(built, tape, &segment.start, segment.span, stage.pace)?;
-    }
-    Ok(())
 }

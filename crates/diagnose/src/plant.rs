@@ -1,13 +1,11 @@
 //! The scenario with a set of effects, built for replay.
 
 use crate::error::DiagnoseError;
-use crate::reading::{LinkPlace, Quantity};
-use multibody::JointKind;
 use record::{RecordedRun, RecordingSet};
 use scenario::Scenario;
-use scenario::measure::{Gauge, SensorModel};
+use scenario::measure::{Gauge, MeasureError, Quantity, SensorModel};
 use scenario::spec::{Effect, ParamValue};
-use sim::{ActuatorKind, DriveAxis, DrivePath, Model, State};
+use sim::{Actuator, ActuatorKind, DriveAxis, DrivePath, Model, State};
 use std::sync::Arc;
 
 /// A scenario whose `[[effect]]` entries are varied, with what the recording says about it.
@@ -53,6 +51,35 @@ impl Plant {
         };
         self.drives = set.runs.iter().map(of_run).collect::<Result<_, _>>()?;
         Ok(())
+    }
+
+    /// What a vector channel (without its component) measures in the nominal model.
+    pub fn quantity(&self, model: &Model, channel: &str) -> Result<Quantity, MeasureError> {
+        Gauge::resolve(&self.scenario, model, channel).map(|gauge| gauge.quantity())
+    }
+
+    /// Actuator that a command channel drives, with the effort of a command of one; `None` for a channel that is no command.
+    pub fn actuator(&self, model: &Model, channel: &str) -> Option<Result<(usize, f64), MeasureError>> {
+        let refuse = |fault: &str| MeasureError { channel: channel.to_owned(), fault: fault.to_owned() };
+        let joint = channel.strip_prefix("joint.").and_then(|c| c.strip_suffix(".effort_command"));
+        let (name, is_drive) = match joint {
+            Some(joint) => (format!("joint.{joint}.position"), true),
+            None if channel.starts_with("actuator.") => (channel.to_owned(), false),
+            None => return None,
+        };
+        let drives =
+            |a: &Actuator, v: usize| matches!(a.kind, ActuatorKind::JointEffort { coordinate, .. } if coordinate == v);
+        Some(self.quantity(model, &name).and_then(|quantity| match quantity {
+            Quantity::JointPosition(v) if is_drive => {
+                let found = model.actuators.iter().position(|a| drives(a, v));
+                found.map(|i| (i, 1.0)).ok_or_else(|| refuse("no [[actuator]] gives this joint an effort; add one"))
+            }
+            Quantity::Command(i) => match model.actuators[i].kind {
+                ActuatorKind::Thruster { max_force, .. } => Ok((i, max_force)),
+                _ => Ok((i, 1.0)),
+            },
+            _ => Err(refuse("commands nothing in the scenario; drop the column")),
+        }))
     }
 
     /// Builds the nominal scenario with `effects` added to its own.
@@ -110,63 +137,5 @@ impl Built {
     /// What a channel reads, and the faults of its sensor.
     pub fn sensor(&self, channel: &str) -> Option<(Gauge, SensorModel)> {
         self.sensors.iter().find(|(c, ..)| c == channel).map(|(_, gauge, model)| (*gauge, *model))
-    }
-
-    /// What a vector channel (without its component) measures; `None` where the scenario has nothing of that name.
-    pub fn quantity(&self, channel: &str) -> Option<Quantity> {
-        let (family, rest) = channel.split_once('.')?;
-        let (name, what) = rest.rsplit_once('.')?;
-        match (family, what) {
-            ("joint", "position") => self.joint(name).map(|(q, v)| Quantity::JointPosition { q, v }),
-            ("joint", "velocity") => self.joint(name).map(|(q, v)| Quantity::JointVelocity { q, v }),
-            ("body", "position") => self.link(name).map(Quantity::Position),
-            ("body", "orientation") => self.link(name).map(Quantity::Orientation),
-            ("body", "linear_velocity") => self.link(name).map(Quantity::LinearVelocity),
-            ("body", "angular_velocity") => self.link(name).map(Quantity::AngularVelocity),
-            ("sensor", "force") => Some(Quantity::Force),
-            ("sensor", "torque") => Some(Quantity::Torque),
-            _ => None,
-        }
-    }
-
-    /// Actuator that a command channel drives, with the effort of a command of one.
-    pub fn actuator(&self, channel: &str) -> Option<(usize, f64)> {
-        let actuators = &self.model.actuators;
-        if let Some(joint) = channel.strip_prefix("joint.").and_then(|c| c.strip_suffix(".effort_command")) {
-            let (_, v) = self.joint(joint)?;
-            let drives =
-                |k: &ActuatorKind| matches!(k, ActuatorKind::JointEffort { coordinate, .. } if *coordinate == v);
-            return actuators.iter().position(|a| drives(&a.kind)).map(|i| (i, 1.0));
-        }
-        let name = channel.strip_prefix("actuator.")?.strip_suffix(".command")?;
-        let i = actuators.iter().position(|a| a.name == name || a.name.ends_with(&format!("/{name}")))?;
-        let unit = if let ActuatorKind::Thruster { max_force, .. } = actuators[i].kind { max_force } else { 1.0 };
-        Some((i, unit))
-    }
-
-    /// Indices into `q` and `v` of a joint with one coordinate, by `joint` where unique or `vehicle/joint`.
-    fn joint(&self, name: &str) -> Option<(usize, usize)> {
-        let all = self.model.vehicles.iter().flat_map(|vehicle| {
-            let single =
-                |j: &&multibody::Joint| matches!(j.kind, JointKind::Revolute | JointKind::Prismatic) && !j.is_mimic;
-            vehicle.tree.joints.iter().filter(single).map(move |j| (vehicle, j))
-        });
-        let named =
-            |(v, j): &(&sim::Vehicle, &multibody::Joint)| j.name == name || format!("{}/{}", v.name, j.name) == name;
-        all.filter(named).map(|(v, j)| (v.q0 + j.q_index, v.v0 + j.v_index)).next()
-    }
-
-    /// A link by `link` where unique, by `vehicle/link`, or a vehicle's base by the vehicle's name.
-    pub fn link(&self, name: &str) -> Option<LinkPlace> {
-        if let Some((vehicle, link)) = self.model.link(name) {
-            return Some(LinkPlace { vehicle, link });
-        }
-        let by_link = self
-            .model
-            .vehicles
-            .iter()
-            .enumerate()
-            .find_map(|(vehicle, v)| v.tree.link(name).map(|link| LinkPlace { vehicle, link }));
-        by_link.or_else(|| self.model.vehicle(name).map(|vehicle| LinkPlace { vehicle, link: 0 }))
     }
 }

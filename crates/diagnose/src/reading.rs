@@ -8,59 +8,8 @@
 //!
 //!   y(t) = scale · exp(angle)ᵀ x(t − delay) + bias,    an orientation q(t − delay) exp(angle).
 
+use scenario::measure::Quantity;
 use spatial::{Rot, Vec3, log_rotation};
-
-/// What is read from the world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// Joint coordinate by its index into `q` and `v`; the motor's where the joint is elastic.
-    JointPosition {
-        /// Index into `q`.
-        q: usize,
-        /// Index into `v`.
-        v: usize,
-    },
-    /// Joint rate.
-    JointVelocity {
-        /// Index into `q`.
-        q: usize,
-        /// Index into `v`.
-        v: usize,
-    },
-    /// Origin of a link in W, m.
-    Position(LinkPlace),
-    /// Orientation of a link in W.
-    Orientation(LinkPlace),
-    /// Velocity of a link's origin, W axes, m/s.
-    LinearVelocity(LinkPlace),
-    /// Angular velocity of a link, link axes, rad/s.
-    AngularVelocity(LinkPlace),
-    /// Force of a sensor, N.
-    Force,
-    /// Moment of a sensor, N·m.
-    Torque,
-}
-
-/// A link of a vehicle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LinkPlace {
-    /// Index of the vehicle.
-    pub vehicle: usize,
-    /// Index of the link in its tree.
-    pub link: usize,
-}
-
-impl Quantity {
-    /// Whether its prediction is an orientation.
-    pub fn is_orientation(&self) -> bool {
-        matches!(self, Self::Orientation(_))
-    }
-
-    /// Whether it is a force or moment, which changes at once when contact begins.
-    pub fn is_force(&self) -> bool {
-        matches!(self, Self::Force | Self::Torque)
-    }
-}
 
 /// A value, with a scalar in x.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,7 +56,7 @@ impl Reading {
     /// Name of one component: `sensor.probe.force.x`.
     pub fn component(&self, k: usize) -> String {
         match self.quantity {
-            Quantity::JointPosition { .. } | Quantity::JointVelocity { .. } => self.channel.clone(),
+            Quantity::JointPosition(_) | Quantity::JointVelocity(_) => self.channel.clone(),
             _ => format!("{}.{}", self.channel, ["x", "y", "z"][self.axes[k]]),
         }
     }

@@ -16,7 +16,7 @@ use crate::hypothesis::Hypothesis;
 use crate::judge::{Judgement, judge};
 use crate::linear::{Segment, Stage, windows};
 use crate::locate::{Located, locate, places};
-use crate::plant::Plant;
+use crate::plant::{Built, Plant};
 use crate::replay::{Pace, Span};
 use crate::search::{Attempt, Limits, is_significant, search};
 use crate::tape::Tape;
@@ -40,8 +40,6 @@ pub(crate) struct Findings {
 
 /// Limits of the search.
 const LIMITS: Limits = Limits { effects: 3, refits: 4, sigmas: 4.0 };
-/// Fit of starts alone.
-const STARTS: Effort = Effort { iterations: 6, share: 1e-4, reuse: false };
 /// Error (units of noise) up to which a corrected model that leaves something is worth its name.
 const NEAR: f64 = 5.0;
 /// Share of the mismatch that may be left for a verdict of "partly explained".
@@ -58,20 +56,19 @@ pub fn diagnose(
     let inspection = record::inspect::inspect(set);
     refuse_foreign(&inspection)?;
     let mut plant = Plant::new(scenario);
-    let tapes = load(&mut plant, set)?;
+    let (tapes, built) = load(&mut plant, set)?;
     let window = window_of(&set.rig, &tapes);
     let stage = Stage { tapes: &tapes, pace: Pace { step: plant.scenario.integrator.step_s } };
     clock.stage("fit the starts of the nominal model", 0.05);
-    let built = plant.build(&[])?;
     let segments = cut(&built, &tapes, Some(window), |t| t.role == Role::Fit);
-    let nominal = fit(&stage, &plant, EffectSet::default(), segments, STARTS)?;
+    let nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort::STARTS)?;
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
     clock.stage("search in windows", 0.25);
     let candidates = |now: &Fit| promising(&located, hypotheses(&Facts::new(&now.built, &tapes)));
     let (in_windows, mut attempts) = search(&stage, &plant, nominal.clone(), &candidates, &LIMITS)?;
     clock.stage("search over whole runs", 0.6);
-    let whole = fit(&stage, &plant, in_windows.set.clone(), joined(&in_windows, &tapes), STARTS)?;
+    let whole = fit(&stage, &plant, in_windows.set.clone(), joined(&in_windows, &tapes), Effort::STARTS)?;
     let follows = whole.rms() < DIVERGED;
     let (found, more) =
         if follows { search(&stage, &plant, whole, &candidates, &LIMITS)? } else { (in_windows, Vec::new()) };
@@ -120,25 +117,16 @@ fn refuse_foreign(inspection: &record::inspect::Inspection) -> Result<(), Diagno
     if faults.is_empty() { Ok(()) } else { Err(DiagnoseError::Foreign(faults.join("; "))) }
 }
 
-/// The runs, and the plant told what is read and driven.
-fn load(plant: &mut Plant, set: &RecordingSet) -> Result<Vec<Tape>, DiagnoseError> {
-    let built = plant.build(&[])?;
-    let tapes: Vec<Tape> = set.runs.iter().map(|run| Tape::new(set, run, &built)).collect::<Result<_, _>>()?;
+/// The runs and the nominal model, the plant told what is read and driven.
+fn load(plant: &mut Plant, set: &RecordingSet) -> Result<(Vec<Tape>, Built), DiagnoseError> {
+    let model = plant.build(&[])?.model;
+    let tapes: Vec<Tape> = set.runs.iter().map(|run| Tape::new(set, run, plant, &model)).collect::<Result<_, _>>()?;
     let mut channels: Vec<String> = tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.channel.clone())).collect();
     channels.sort();
     channels.dedup();
-    plant.attach(set, &built.model, channels)?;
-    let built = plant.build(&[])?;
-    let unread = tapes.iter().flat_map(|t| t.readings.iter().map(move |r| (t, r)));
-    for (tape, reading) in unread {
-        if built.sensor(&reading.channel).is_none() {
-            return Err(DiagnoseError::Channel {
-                channel: reading.channel.clone(),
-                file: tape.file.clone(),
-                reason: "the scenario has no sensor of that name; add a [[sensor]], or drop the column".to_owned(),
-            });
-        }
-        if reading.sigma <= 0.0 {
+    plant.attach(set, &model, channels)?;
+    for tape in &tapes {
+        if let Some(reading) = tape.readings.iter().find(|r| r.sigma <= 0.0) {
             return Err(DiagnoseError::Channel {
                 channel: reading.channel.clone(),
                 file: tape.file.clone(),
@@ -147,7 +135,7 @@ fn load(plant: &mut Plant, set: &RecordingSet) -> Result<Vec<Tape>, DiagnoseErro
             });
         }
     }
-    Ok(tapes)
+    Ok((tapes, plant.build(&[])?))
 }
 
 /// Window in which a rig's predictions are judged, s; elsewhere a twentieth of a run.
@@ -163,12 +151,7 @@ fn window_of(rig: &str, tapes: &[Tape]) -> f64 {
 }
 
 /// Windows of some runs, with guessed starts.
-pub(crate) fn cut(
-    built: &crate::plant::Built,
-    tapes: &[Tape],
-    window: Option<f64>,
-    wanted: impl Fn(&Tape) -> bool,
-) -> Vec<Segment> {
+pub(crate) fn cut(built: &Built, tapes: &[Tape], window: Option<f64>, wanted: impl Fn(&Tape) -> bool) -> Vec<Segment> {
     let runs = (0..tapes.len()).filter(|r| wanted(&tapes[*r]));
     let spans = runs.flat_map(|run| windows(&tapes[run], window).into_iter().map(move |span| (run, span)));
     spans.map(|(run, span)| Segment { run, span, start: guess(built, &tapes[run], span.from), columns: None }).collect()

@@ -40,11 +40,6 @@ const PILOTS: usize = 3;
 /// Segments that a screen looks at.
 const SEGMENTS: usize = 24;
 
-/// One column, ready to be simulated.
-struct Probe {
-    variation: Variation,
-}
-
 /// Scores every screen point of every hypothesis beside a converged fit; best first.
 ///
 /// Of very many segments an even selection speaks for all.
@@ -65,7 +60,7 @@ fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     let active = vary(plant, &fit.set, &slots, &sizes)?;
     let points: Vec<(usize, usize)> =
         all.iter().enumerate().flat_map(|(h, hyp)| (0..hyp.screens.len()).map(move |p| (h, p))).collect();
-    let probes: Vec<Vec<Probe>> =
+    let probes: Vec<Vec<Variation>> =
         points.par_iter().map(|(h, p)| probes_of(stage, plant, fit, &all[*h], &all[*h].screens[*p])).collect();
     let products = sum_products(stage, fit, &active, &probes);
     let scores = points.iter().zip(&probes).zip(products).filter_map(|((at, probes), k)| {
@@ -88,7 +83,13 @@ fn active_size(fit: &Fit, m: usize, k: usize) -> f64 {
 }
 
 /// The columns of a screen point with tuned steps; those that cannot be built are left out.
-fn probes_of(stage: &Stage<'_>, plant: &Plant, fit: &Fit, hypothesis: &Hypothesis, point: &ScreenPoint) -> Vec<Probe> {
+fn probes_of(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    fit: &Fit,
+    hypothesis: &Hypothesis,
+    point: &ScreenPoint,
+) -> Vec<Variation> {
     let build = |base: &[f64], direction: &[f64], step: f64| -> Option<Variation> {
         let x: Vec<f64> = base.iter().zip(direction).map(|(b, d)| b + step * d).collect();
         let mut effects = fit.set.effects();
@@ -98,13 +99,13 @@ fn probes_of(stage: &Stage<'_>, plant: &Plant, fit: &Fit, hypothesis: &Hypothesi
     let tuned = |c: &crate::hypothesis::Column| {
         let first = build(&c.base, &c.direction, c.step)?;
         if c.secant {
-            return Some(Probe { variation: first });
+            return Some(first);
         }
         let size = pilot_size(stage, fit, &first.built);
         let step = if size > 0.0 && size.is_finite() { c.step * (WISH / size).clamp(1e-6, 1e4) } else { c.step };
         let near = (0.1..3.0).contains(&(step / c.step));
         let variation = if near { first } else { build(&c.base, &c.direction, step)? };
-        Some(Probe { variation })
+        Some(variation)
     };
     point.columns.iter().filter_map(tuned).collect()
 }
@@ -121,7 +122,7 @@ fn pilot_size(stage: &Stage<'_>, fit: &Fit, built: &Built) -> f64 {
 }
 
 /// Reduced products of (active, columns, r) of every point, summed over the segments.
-fn sum_products(stage: &Stage<'_>, fit: &Fit, active: &[Variation], probes: &[Vec<Probe>]) -> Vec<DMatrix<f64>> {
+fn sum_products(stage: &Stage<'_>, fit: &Fit, active: &[Variation], probes: &[Vec<Variation>]) -> Vec<DMatrix<f64>> {
     let of_segment: Vec<Vec<DMatrix<f64>>> =
         fit.segments.par_iter().map(|segment| products_of(stage, fit, segment, active, probes)).collect();
     (0..probes.len())
@@ -137,15 +138,15 @@ fn products_of(
     fit: &Fit,
     segment: &Segment,
     active: &[Variation],
-    probes: &[Vec<Probe>],
+    probes: &[Vec<Variation>],
 ) -> Vec<DMatrix<f64>> {
     let base = freedoms(&fit.built, &segment.start);
     let r = stage.residuals(&fit.built, segment);
     let mut steps = Steps::default();
     let s = stage.start_columns(&fit.built, segment, &r, &base, &mut steps);
     let g: Vec<DVector<f64>> = active.par_iter().map(|v| stage.column(v, segment, &r)).collect();
-    let of_point = |probes: &Vec<Probe>| {
-        let columns: Vec<DVector<f64>> = probes.iter().map(|p| stage.column(&p.variation, segment, &r)).collect();
+    let of_point = |probes: &Vec<Variation>| {
+        let columns: Vec<DVector<f64>> = probes.iter().map(|p| stage.column(p, segment, &r)).collect();
         let own: Vec<DVector<f64>> =
             probes.iter().step_by(3).take(2).flat_map(|p| own_columns(stage, segment, &base, p)).collect();
         let starts: Vec<&DVector<f64>> = s.iter().chain(&own).collect();
@@ -157,8 +158,8 @@ fn products_of(
 }
 
 /// Columns of the memory that a hypothesis brings.
-fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: &Probe) -> Vec<DVector<f64>> {
-    let built = &probe.variation.built;
+fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: &Variation) -> Vec<DVector<f64>> {
+    let built = &probe.built;
     let own: Vec<Freedom> =
         freedoms(built, &segment.start.fitted_to(built)).into_iter().filter(|f| !base.contains(f)).collect();
     if own.is_empty() {
@@ -173,7 +174,7 @@ fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: &P
 fn score(
     hypothesis: &Hypothesis,
     point: &ScreenPoint,
-    probes: &[Probe],
+    probes: &[Variation],
     k: &DMatrix<f64>,
     (active, count): (usize, usize),
 ) -> Option<(f64, usize, Vec<f64>)> {
@@ -185,7 +186,7 @@ fn score(
     // A column that its step does not even move by a thousandth of the noise is rounding, not physics.
     let last = k.ncols() - 1;
     for (i, probe) in probes.iter().enumerate() {
-        let moved = probe.variation.step.abs() * (k[(active + i, active + i)].max(0.0) / count as f64).sqrt();
+        let moved = probe.step.abs() * (k[(active + i, active + i)].max(0.0) / count as f64).sqrt();
         if moved < SILENT {
             (0..=last).for_each(|j| {
                 k[(active + i, j)] = 0.0;

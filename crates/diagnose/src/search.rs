@@ -117,10 +117,11 @@ fn refit_best(
     (all, scores): (&[Hypothesis], &[Score]),
     (limits, round): (&Limits, usize),
 ) -> Result<(Option<Fit>, Vec<Attempt>), DiagnoseError> {
-    let picked = pick(now, all, scores, limits.refits);
+    let interesting = scores_of_interest(all, scores);
+    let picked = pick(now, all, &interesting, limits.refits);
     let mut best: Option<Fit> = None;
     let mut attempts = Vec::new();
-    for score in scores_of_interest(all, scores) {
+    for score in interesting {
         let h = &all[score.hypothesis];
         let mut attempt = Attempt {
             round,
@@ -177,9 +178,8 @@ fn scores_of_interest<'s>(all: &[Hypothesis], scores: &'s [Score]) -> Vec<&'s Sc
 }
 
 /// The hypotheses worth a refit: the most promising, one of each, nominal numbers among them if they promise anything.
-fn pick<'s>(now: &Fit, all: &[Hypothesis], scores: &'s [Score], most: usize) -> Vec<&'s Score> {
+fn pick<'s>(now: &Fit, all: &[Hypothesis], interesting: &[&'s Score], most: usize) -> Vec<&'s Score> {
     let penalty = (now.count as f64).ln();
-    let interesting = scores_of_interest(all, scores);
     let best = interesting.first().map_or(0.0, |s| s.score);
     let worth = |s: &&&Score| s.score > (PROMISING * best).max(penalty * s.rank as f64);
     let mut picked: Vec<&Score> = interesting.iter().filter(worth).take(most).copied().collect();

@@ -1,10 +1,12 @@
 //! A recorded run, made ready for replay: commands, readings, and the order in which they come.
 
 use crate::error::DiagnoseError;
-use crate::plant::Built;
-use crate::reading::{Quantity, Reading, Value};
+use crate::plant::Plant;
+use crate::reading::{Reading, Value};
 use crate::replay::Span;
 use record::{RecordedRun, RecordingSet, Role, Series};
+use scenario::measure::{MeasureError, Quantity};
+use sim::Model;
 use spatial::{Rot, Vec3, nalgebra};
 use std::collections::BTreeMap;
 
@@ -57,43 +59,31 @@ impl Tape {
     /// Matches a run's channels with the scenario's quantities.
     ///
     /// Channels that the scenario does not know are errors; those that only tell what was commanded or driven are inputs.
-    pub fn new(set: &RecordingSet, run: &RecordedRun, built: &Built) -> Result<Self, DiagnoseError> {
-        let fault = |channel: &str, reason: &str| DiagnoseError::Channel {
-            channel: channel.to_owned(),
+    pub fn new(set: &RecordingSet, run: &RecordedRun, plant: &Plant, model: &Model) -> Result<Self, DiagnoseError> {
+        let refuse = |error: MeasureError| DiagnoseError::Channel {
+            channel: error.channel,
             file: run.file.clone(),
-            reason: reason.to_owned(),
+            reason: error.fault,
         };
         let mut commands = Vec::new();
         let mut groups: BTreeMap<String, Vec<(usize, &Series)>> = BTreeMap::new();
-        for series in run.series.iter().filter(|s| !s.times.is_empty()) {
-            let channel = series.channel.as_str();
-            if channel.starts_with("drive.") {
-                continue;
-            }
-            if channel.ends_with(".effort_command")
-                || (channel.starts_with("actuator.") && channel.ends_with(".command"))
-            {
-                let (actuator, unit) = built.actuator(channel).ok_or_else(|| {
-                    fault(
-                        channel,
-                        "the scenario has no actuator of that name; name it as the recording does, or drop the column",
-                    )
-                })?;
+        for series in run.series.iter().filter(|s| !s.times.is_empty() && !s.channel.starts_with("drive.")) {
+            if let Some(found) = plant.actuator(model, &series.channel) {
+                let (actuator, unit) = found.map_err(refuse)?;
                 let efforts = series.values.iter().map(|v| v * unit).collect();
                 commands.push(CommandTape { actuator, times: series.times.clone(), efforts });
                 continue;
             }
-            let (prefix, component) = split_component(channel);
+            let (prefix, component) = split_component(&series.channel);
             groups.entry(prefix.to_owned()).or_default().push((component, series));
         }
         let mut readings = Vec::new();
         for (prefix, group) in &groups {
-            let Some(quantity) = built.quantity(prefix) else {
-                return Err(fault(
-                    prefix,
-                    "nothing in the scenario is measured by it; check joint, body and sensor names",
-                ));
-            };
+            let quantity = plant.quantity(model, prefix).map_err(refuse)?;
+            if let Quantity::JointEffort(_) = quantity {
+                let fault = "measured efforts are not predicted in this version; drop the column".to_owned();
+                return Err(refuse(MeasureError { channel: prefix.clone(), fault }));
+            }
             readings.extend(readings_of(set, prefix, quantity, group));
         }
         let index = set.runs.iter().position(|r| r.file == run.file && r.note == run.note).unwrap_or(0);
@@ -124,11 +114,6 @@ impl Tape {
         let end = if span.to >= self.span.1 { self.events.len() } else { before(span.to) };
         before(span.from)..end.max(before(span.from))
     }
-
-    /// Scalars in the residual of all readings.
-    pub fn count_scalars(&self) -> usize {
-        self.readings.iter().map(|r| r.width() * r.times.len()).sum()
-    }
 }
 
 /// `body.target.position.x` → (`body.target.position`, 0); scalars stand in component 0, w of a quaternion in 3.
@@ -142,6 +127,10 @@ fn split_component(channel: &str) -> (&str, usize) {
     }
 }
 
+fn is_orientation(quantity: &Quantity) -> bool {
+    matches!(quantity, Quantity::Orientation(..))
+}
+
 /// One reading of the components that were sampled together; where they were not, one each.
 fn readings_of(set: &RecordingSet, prefix: &str, quantity: Quantity, group: &[(usize, &Series)]) -> Vec<Reading> {
     let together = group.iter().all(|(_, s)| s.times == group[0].1.times);
@@ -150,7 +139,7 @@ fn readings_of(set: &RecordingSet, prefix: &str, quantity: Quantity, group: &[(u
     let of_part = |part: &Vec<(usize, &Series)>| {
         let quantum = part.iter().map(|(_, s)| s.quantum()).fold(0.0, f64::max);
         let stated = set.sigma(&part[0].1.channel).or_else(|| set.sigma(prefix));
-        let orientation = quantity.is_orientation();
+        let orientation = is_orientation(&quantity);
         // Rounded components of a unit quaternion turn into an angle twice as large.
         let rounding = if orientation { 2.0 * quantum } else { quantum };
         let sigma = (stated.unwrap_or(0.0).powi(2) + rounding * rounding / 12.0).sqrt();
@@ -159,7 +148,7 @@ fn readings_of(set: &RecordingSet, prefix: &str, quantity: Quantity, group: &[(u
         let axes = if orientation { vec![0, 1, 2] } else { part.iter().map(|(k, _)| *k).collect() };
         Reading { channel: prefix.to_owned(), quantity, axes, sigma, times, values }
     };
-    parts.iter().filter(|p| !quantity.is_orientation() || p.len() == 4).map(of_part).collect()
+    parts.iter().filter(|p| !is_orientation(&quantity) || p.len() == 4).map(of_part).collect()
 }
 
 fn value_at(part: &[(usize, &Series)], i: usize, orientation: bool) -> Value {

@@ -7,7 +7,7 @@ use crate::evidence::{
     self, Evidence, Heat, HeatRow, Hypothesis, Level, Parameter, Remark, Status, bin_edges, mean_squares,
 };
 use crate::fit::Fit;
-use crate::linear::{Segment, Stage};
+use crate::linear::Stage;
 use crate::run::Findings;
 use crate::vocabulary::unit;
 use nalgebra::DMatrix;
@@ -147,10 +147,10 @@ fn condition_of(place: &str) -> &'static str {
 fn errors(findings: &Findings, stage: &Stage<'_>) -> Errors {
     let judgement = &findings.judgement;
     let pair = |[before, after]: [f64; 2]| BeforeAfter { before, after };
-    let of_role = |windowed: bool, role: record::Role| judgement.rms_of(stage, windowed, role).map(pair);
+    let of_role = |windowed: bool, role: record::Role| judgement.rms_of(stage.tapes, windowed, role).map(pair);
     let run = |(i, tape): (usize, &crate::tape::Tape)| {
-        let [before, after] = judgement.rms(stage, false, |r| r == i);
-        let [windowed_before, windowed_after] = judgement.rms(stage, true, |r| r == i);
+        let [before, after] = judgement.rms(false, |r| r == i);
+        let [windowed_before, windowed_after] = judgement.rms(true, |r| r == i);
         RunError { file: tape.file.clone(), role: role(tape.role), before, after, windowed_before, windowed_after }
     };
     let none = BeforeAfter { before: f64::NAN, after: f64::NAN };
@@ -229,9 +229,11 @@ fn heat(findings: &Findings, stage: &Stage<'_>) -> Vec<Heat> {
     let strip = |run: usize| {
         let tape = &tapes[run];
         let edges = bin_edges(tape.span.0, tape.span.1, BINS);
-        let samples = windowed.each_ref().map(|fit| squares(stage, fit, run));
+        let samples = windowed.each_ref().map(|p| p.scalars(tape));
         let row = |(k, reading): (usize, &crate::reading::Reading)| {
-            let of = |m: usize| mean_squares(samples[m].iter().filter(|s| s.0 == k).map(|s| (s.1, s.2)), &edges);
+            let of = |m: usize| {
+                mean_squares(samples[m].iter().filter(|s| s.reading == k).map(|s| (s.time, s.residual)), &edges)
+            };
             HeatRow { channel: reading.channel.clone(), nominal: of(0), corrected: of(1) }
         };
         Heat {
@@ -243,21 +245,4 @@ fn heat(findings: &Findings, stage: &Stage<'_>) -> Vec<Heat> {
         }
     };
     (0..tapes.len()).map(strip).collect()
-}
-
-/// Reading, time and residual of every scalar of a run's windows.
-fn squares(stage: &Stage<'_>, fit: &Fit, run: usize) -> Vec<(usize, f64, f64)> {
-    let tape = &stage.tapes[run];
-    let mut all = Vec::new();
-    for segment in fit.segments.iter().filter(|s: &&Segment| s.run == run) {
-        let r = stage.residuals(&fit.built, segment);
-        let range = tape.range(segment.span);
-        for i in range.clone() {
-            let event = &tape.events[i];
-            let first = tape.offsets[i] - tape.offsets[range.start];
-            let width = tape.readings[event.reading as usize].width();
-            all.extend((first..first + width).map(|k| (event.reading as usize, event.time, r[k])));
-        }
-    }
-    all
 }

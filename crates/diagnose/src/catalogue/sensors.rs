@@ -3,7 +3,7 @@
 use super::hypothesis;
 use crate::facts::SensorFact;
 use crate::hypothesis::{Coordinate, Hypothesis};
-use crate::reading::Quantity;
+use scenario::measure::Quantity;
 
 const BIAS: [&str; 3] = ["bias[0]", "bias[1]", "bias[2]"];
 const ANGLE: [&str; 3] = ["angle[0]", "angle[1]", "angle[2]"];
@@ -11,8 +11,8 @@ const ANGLE: [&str; 3] = ["angle[0]", "angle[1]", "angle[2]"];
 pub(super) fn add(sensor: &SensorFact, all: &mut Vec<Hypothesis>) {
     let place = format!("sensor:{}", sensor.channel);
     let place = place.as_str();
-    let scalar = matches!(sensor.quantity, Quantity::JointPosition { .. } | Quantity::JointVelocity { .. });
-    let orientation = sensor.quantity.is_orientation();
+    let scalar = matches!(sensor.quantity, Quantity::JointPosition(_) | Quantity::JointVelocity(_));
+    let orientation = matches!(sensor.quantity, Quantity::Orientation(..));
     if scalar {
         all.push(hypothesis("sensor-bias", place, vec![Coordinate::free("bias", 0.0)]).screened(&[(0, sensor.sigma)]));
     } else if !orientation {

@@ -5,19 +5,27 @@ use spatial::{Pose, Vec3, Wrench};
 
 /// A force sensor of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum ForceGauge {
+pub enum ForceGauge {
     /// Sum of the contact forces on one shape, or on every shape of a link.
     Contact {
-        /// Global body and, where only one counts, the collider.
+        /// Global body.
         body: usize,
+        /// The collider, where only one counts.
         collider: Option<usize>,
-        /// The sensor in its link: vehicle, link, and where it stands there.
+        /// Vehicle that carries the sensor.
         vehicle: usize,
+        /// Link that carries it.
         link: usize,
+        /// The sensor in that link.
         pose_ls: Pose,
     },
     /// What a mechanism does to its side b (or a), W axes, moment about the point of action.
-    Mechanism { index: usize, sign: f64 },
+    Mechanism {
+        /// Index of the mechanism.
+        index: usize,
+        /// 1 on side b, −1 on side a.
+        sign: f64,
+    },
 }
 
 impl ForceGauge {

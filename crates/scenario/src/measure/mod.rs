@@ -20,10 +20,10 @@ mod force;
 mod resolve;
 mod sensor;
 
+pub use force::ForceGauge;
 pub use sensor::SensorModel;
 
 use crate::spec::Scenario;
-use force::ForceGauge;
 use sim::{ActuatorKind, DriveAxis, Model, World};
 use spatial::{Rot, Vec3};
 
@@ -54,20 +54,32 @@ pub struct Gauge {
     quantity: Quantity,
 }
 
-/// What is read; joints by their index into `v`, links by vehicle and link.
+/// What is read; joints by their index into `v`, links by vehicle and link, drives and actuators by their index.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Quantity {
+pub enum Quantity {
+    /// Motor side of a joint, rad or m.
     JointPosition(usize),
+    /// Motor side of a joint, rad/s or m/s.
     JointVelocity(usize),
+    /// Effort of the last step, N·m or N.
     JointEffort(usize),
+    /// Origin of a link in W, m.
     Position(usize, usize),
+    /// Link axes in W.
     Orientation(usize, usize),
+    /// Of a link's origin, W axes, m/s.
     LinearVelocity(usize, usize),
+    /// Of a link, link axes, rad/s.
     AngularVelocity(usize, usize),
+    /// Of a force sensor, N.
     Force(ForceGauge),
+    /// Of a force sensor, N·m.
     Torque(ForceGauge),
+    /// Displacement of a drive, axes of its frame, m.
     DrivePosition(usize),
+    /// Turn of a drive, rad.
     DriveAngle(usize),
+    /// What a controller asked an actuator for.
     Command(usize),
 }
 
@@ -76,6 +88,11 @@ impl Gauge {
     pub fn resolve(scenario: &Scenario, model: &Model, name: &str) -> Result<Self, MeasureError> {
         let refuse = |fault: String| MeasureError { channel: name.to_owned(), fault };
         resolve::quantity(scenario, model, name).map(|quantity| Self { quantity }).map_err(refuse)
+    }
+
+    /// What it reads.
+    pub fn quantity(&self) -> Quantity {
+        self.quantity
     }
 
     /// Its present value, without faults of a sensor.
