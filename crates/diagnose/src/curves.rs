@@ -79,6 +79,10 @@ pub(crate) fn forces(findings: &Findings, stage: &Stage<'_>) -> Vec<MissingForce
             let of = |f: &dyn Fn(&crate::locate::WindowForce) -> f64| -> Vec<f64> {
                 windows.iter().map(|i| f(&located.windows[*i][p])).collect()
             };
+            let std_err = of(&|w| w.error[c]);
+            if std_err.iter().all(|e| *e == 0.0) {
+                continue; // Nothing that was measured shows it.
+            }
             all.push(MissingForce {
                 place: place.name.clone(),
                 freedom: label.trim_end_matches("constant").trim().to_owned(),
@@ -86,7 +90,7 @@ pub(crate) fn forces(findings: &Findings, stage: &Stage<'_>) -> Vec<MissingForce
                 run: stage.tapes[run].file.clone(),
                 t: windows.iter().map(|i| 0.5 * (segments[*i].span.from + segments[*i].span.to)).collect(),
                 estimate: of(&|w| w.estimate[c]),
-                std_err: of(&|w| w.error[c]),
+                std_err,
                 law: None,
             });
         }

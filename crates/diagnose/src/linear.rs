@@ -78,6 +78,8 @@ pub struct Steps {
 const DAMPING: f64 = 1e-9;
 /// Root mean square by which a step shall move the residual, in units of noise.
 const WISH: f64 = 0.2;
+/// Root mean square below which a change of the residual is rounding, units of noise.
+const ROUNDING: f64 = 1e-5;
 /// Range of that within which a step is kept.
 const FAIR: [f64; 2] = [0.02, 2.0];
 
@@ -146,7 +148,12 @@ impl Stage<'_> {
     /// Change of the residual per unit of a variation, from the same start.
     pub fn column(&self, variation: &Variation, segment: &Segment, r: &DVector<f64>) -> DVector<f64> {
         let start = segment.start.fitted_to(&variation.built);
-        sane((self.residuals_from(&variation.built, segment, &start) - r) / variation.step)
+        let moved = self.residuals_from(&variation.built, segment, &start) - r;
+        // What no reading shows must not be estimated from rounding.
+        if moved.norm_squared() < ROUNDING * ROUNDING * r.len() as f64 {
+            return DVector::zeros(r.len());
+        }
+        sane(moved / variation.step)
     }
 
     /// Derivatives by coordinates of the start.
