@@ -3,7 +3,7 @@
 use crate::Status;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
-use softdock::diagnose::{self, summary_text, write_diagnosis};
+use softdock::diagnose::{self, Watch, summary_text, write_diagnosis};
 use softdock::record::{OutputFolder, RecordingSet};
 use std::path::PathBuf;
 
@@ -26,6 +26,29 @@ pub(crate) struct Arguments {
     /// No progress bar
     #[arg(long)]
     quiet: bool,
+    /// Print what the search tries and where the time goes
+    #[arg(long)]
+    verbose: bool,
+}
+
+/// The progress bar.
+struct Progress {
+    bar: ProgressBar,
+    is_verbose: bool,
+}
+
+impl Watch for Progress {
+    fn stage(&self, name: &str, share: f64) {
+        self.bar.set_message(name.to_owned());
+        self.bar.set_position((1000.0 * share) as u64);
+        self.step(name);
+    }
+
+    fn step(&self, what: &str) {
+        if self.is_verbose {
+            eprintln!("{:>7.1} s  {what}", self.bar.elapsed().as_secs_f64());
+        }
+    }
 }
 
 /// Diagnoses, writes the files, and says by the status whether the recording is explained.
@@ -35,13 +58,12 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let name = arguments.recording.file_name().map_or_else(|| "recording".into(), |n| n.to_os_string());
     let target = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out/diagnose").join(name));
     let folder = OutputFolder::create(&target)?;
-    let bar = progress(arguments.quiet);
-    let show = |stage: &str, share: f64| {
-        bar.set_message(stage.to_owned());
-        bar.set_position((1000.0 * share) as u64);
-    };
-    let (diagnosis, evidence) = diagnose::diagnose(scenario.clone(), &set, &show)?;
-    bar.finish_and_clear();
+    let progress = Progress { bar: progress(arguments.quiet || arguments.verbose), is_verbose: arguments.verbose };
+    let (diagnosis, evidence) = diagnose::diagnose(scenario.clone(), &set, &progress)?;
+    progress.bar.finish_and_clear();
+    for stage in evidence.timings.iter().filter(|_| arguments.verbose) {
+        eprintln!("{:>7.1} s  {:<40} {:>9.1} s simulated", stage.wall_s, stage.name, stage.simulated_s);
+    }
     let summary = serde_json::Map::from_iter([("verdict".to_owned(), json!(diagnosis.verdict.word()))]);
     write_diagnosis(&folder, &scenario, &diagnosis, &evidence)?;
     let place = folder.finish(&summary)?;

@@ -135,9 +135,11 @@ pub fn fit(
     effort: Effort,
 ) -> Result<Fit, DiagnoseError> {
     let built = plant.build(&set.effects())?;
-    let segments: Vec<Segment> =
-        segments.into_iter().map(|s| Segment { start: s.start.fitted_to(&built), ..s }).collect();
-    let (cost, count) = stage.cost(&built, &segments);
+    if set.slots().is_empty() {
+        return Ok(fit_starts(stage, set, built, &segments, effort));
+    }
+    let (segments, cost) = stage.settle(&built, &segments);
+    let count = segments.iter().map(|s| stage.count(s)).sum();
     let mut now = Fit {
         freedom: set.slots().len(),
         set,
@@ -156,6 +158,22 @@ pub fn fit(
         damping = iterate(stage, plant, &mut now, (&mut steps, &mut sizes), (damping, effort))?;
     }
     Ok(now)
+}
+
+/// The starts alone.
+fn fit_starts(stage: &Stage<'_>, set: EffectSet, built: Built, segments: &[Segment], effort: Effort) -> Fit {
+    let settled = stage.fit_starts(&built, segments, (effort.iterations, effort.share));
+    Fit {
+        set,
+        built,
+        cost: settled.iter().map(|s| s.cost).sum(),
+        count: segments.iter().map(|s| stage.count(s)).sum(),
+        freedom: settled.iter().map(|s| s.shown).sum(),
+        covariance: DMatrix::zeros(0, 0),
+        converged: settled.iter().all(|s| s.converged),
+        iterations: settled.iter().map(|s| s.iterations).max().unwrap_or(0),
+        segments: settled.into_iter().map(|s| s.segment).collect(),
+    }
 }
 
 /// First steps of the difference quotients.
@@ -202,13 +220,8 @@ fn iterate(
         let theta = step(&a, &b, damping);
         let set = now.set.moved(&slots, theta.as_slice());
         let actual: Vec<f64> = slots.iter().map(|(m, c)| set.members[*m].1[*c] - now.set.members[*m].1[*c]).collect();
-        let moved = |(segment, linear): (&Segment, &crate::linear::SegmentLinear)| Segment {
-            start: segment.start.retract(&linear.freedoms, &linear.start_step(&actual)),
-            ..segment.clone()
-        };
-        let segments: Vec<Segment> = now.segments.iter().zip(&linear).map(moved).collect();
         if let Ok(built) = plant.build(&set.effects()) {
-            let (cost, _) = stage.cost(&built, &segments);
+            let (segments, cost) = stage.follow(&built, &now.segments, &linear, &actual);
             if cost < now.cost {
                 let gained = now.cost - cost;
                 (now.set, now.built, now.segments, now.cost) = (set, built, segments, cost);

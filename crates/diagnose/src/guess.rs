@@ -36,7 +36,8 @@ pub fn guess(built: &Built, tape: &Tape, time: f64) -> Start {
         }
     }
     if time > tape.span.0 {
-        start.free_bristles(built, tape.index);
+        let measured: Vec<Option<Twist>> = (0..built.model.vehicles.len()).map(|v| acceleration(v, tape, time)).collect();
+        start.free_bristles(built, tape.index, &measured);
     }
     start
 }
@@ -71,6 +72,19 @@ fn guess_base(start: &mut Start, v: usize, tape: &Tape, time: f64, of_base: impl
             _ => {}
         }
     }
+}
+
+/// Acceleration of a base by the curvature of its measured path; `None` where nothing measures its place.
+fn acceleration(v: usize, tape: &Tape, time: f64) -> Option<Twist> {
+    let mut found = None;
+    for reading in tape.readings.iter().filter(|r| r.quantity == Quantity::Position(v, 0)) {
+        let range = nearest(&reading.times, time);
+        let value = |i: usize| if let Value::Vector(v) = reading.values[i] { v } else { Vec3::zeros() };
+        let curvature = parabola(&reading.times[range.clone()], range.map(value), time)?[2];
+        let twist: &mut Twist = found.get_or_insert_with(Twist::default);
+        reading.axes.iter().for_each(|&axis| twist.lin[axis] = 2.0 * curvature[axis]);
+    }
+    found
 }
 
 /// The components of a twist that a guide holds are zero.
@@ -108,7 +122,15 @@ fn fit_rotation(reading: &Reading, time: f64) -> (Rot, Vec3) {
     (exp_rotation(&phi) * centre, rate)
 }
 
-fn fit(times: &[f64], values: impl Iterator<Item = Vec3>, time: f64) -> (Vec3, Vec3) {
+fn fit(times: &[f64], values: impl Iterator<Item = Vec3> + Clone, time: f64) -> (Vec3, Vec3) {
+    match parabola(times, values.clone(), time) {
+        Some([value, rate, _]) => (value, rate),
+        None => (values.fold(Vec3::zeros(), |sum, v| sum + v) / times.len().max(1) as f64, Vec3::zeros()),
+    }
+}
+
+/// Coefficients of the parabola through some samples, about `time`; `None` of too few.
+fn parabola(times: &[f64], values: impl Iterator<Item = Vec3>, time: f64) -> Option<[Vec3; 3]> {
     let width = times.iter().map(|t| (t - time).abs()).fold(1e-12, f64::max);
     let (mut a, mut b) = (Matrix3::zeros(), Matrix3::zeros());
     for (t, value) in times.iter().zip(values) {
@@ -117,11 +139,6 @@ fn fit(times: &[f64], values: impl Iterator<Item = Vec3>, time: f64) -> (Vec3, V
         a += basis * basis.transpose();
         b += basis * value.transpose();
     }
-    match (times.len() >= 6).then(|| a.try_inverse()).flatten() {
-        Some(inverse) => {
-            let c = inverse * b;
-            (c.row(0).transpose(), c.row(1).transpose() / width)
-        }
-        None => (b.row(0).transpose() / a[(0, 0)].max(1.0), Vec3::zeros()),
-    }
+    let c = (times.len() >= 6).then(|| a.try_inverse()).flatten()? * b;
+    Some([c.row(0).transpose(), c.row(1).transpose() / width, c.row(2).transpose() / (width * width)])
 }

@@ -6,13 +6,14 @@
 //!   H = [S G r]ᵀ [S G r],      K = H_pp − H_ps H_ss⁺ H_sp,      p = (θ, r)
 //!
 //! K is the Gram matrix of what is left of G and r when the start has done what it can (Schur complement; the pseudo-inverse of the scaled
-//! H_ss is damped, so that a start that nothing shows stays put). Sums of K over segments hold everything that a step of a fit and a score
+//! H_ss is damped, so that a start that nothing shows stays put, and a bristle that slides already does not run off). Sums of K over segments hold everything that a step of a fit and a score
 //! test need.
 
 use crate::plant::Built;
 use crate::replay::{Pace, Span, residuals};
 use crate::start::{Freedom, Start, freedoms};
 use crate::tape::Tape;
+use crate::work::Work;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -90,6 +91,8 @@ pub struct Stage<'a> {
     pub tapes: &'a [Tape],
     /// Step of the replay.
     pub pace: Pace,
+    /// What was simulated so far.
+    pub work: &'a Work<'a>,
 }
 
 impl Stage<'_> {
@@ -100,13 +103,18 @@ impl Stage<'_> {
 
     fn residuals_from(&self, built: &Built, segment: &Segment, start: &Start) -> DVector<f64> {
         let tape = &self.tapes[segment.run];
+        self.work.add(segment.span.to - segment.span.from);
         match residuals(built, tape, start, segment.span, self.pace) {
             Ok(r) => DVector::from_vec(r),
-            Err(_) => {
-                let range = tape.range(segment.span);
-                DVector::from_element(tape.offsets[range.end] - tape.offsets[range.start], f64::INFINITY)
-            }
+            Err(_) => DVector::from_element(self.count(segment), f64::INFINITY),
         }
+    }
+
+    /// Scalars in a segment's residual.
+    pub fn count(&self, segment: &Segment) -> usize {
+        let tape = &self.tapes[segment.run];
+        let range = tape.range(segment.span);
+        tape.offsets[range.end] - tape.offsets[range.start]
     }
 
     /// Squared norm of all residuals, and how many there are.
@@ -135,7 +143,7 @@ impl Stage<'_> {
             .zip(first)
             .map(|(segment, sizes)| {
                 let all = freedoms(built, &segment.start);
-                let known = segment.columns.as_ref().filter(|c| reuse && c.freedoms == all);
+                let known = segment.columns.as_ref().filter(|_| reuse);
                 self.linearise_segment(built, segment, variations, (&all, sizes, known))
             })
             .collect();
@@ -156,22 +164,8 @@ impl Stage<'_> {
         sane(moved / variation.step)
     }
 
-    /// Derivatives by coordinates of the start.
-    pub fn start_columns(
-        &self,
-        built: &Built,
-        segment: &Segment,
-        r: &DVector<f64>,
-        all: &[Freedom],
-        steps: &mut Steps,
-    ) -> Vec<DVector<f64>> {
-        let sizes = steps.of(segment.run, all);
-        let (columns, sizes): (Vec<_>, Vec<_>) = self.quotients(built, segment, r, (all, &sizes)).into_iter().unzip();
-        steps.keep(segment.run, &sizes);
-        columns
-    }
-
-    fn quotients(
+    /// Difference quotients by some coordinates of the start, and the steps over which they were taken.
+    pub fn quotients(
         &self,
         built: &Built,
         segment: &Segment,
@@ -184,6 +178,42 @@ impl Stage<'_> {
         all.par_iter().zip(sizes.par_iter()).map(of).collect()
     }
 
+    /// Columns of a start: those that are known already, the others by replays.
+    fn start_columns_beside(
+        &self,
+        built: &Built,
+        segment: &Segment,
+        r: &DVector<f64>,
+        (all, mut sizes): (&[Freedom], Vec<f64>),
+        known: Option<&Arc<StartColumns>>,
+    ) -> (Arc<StartColumns>, Vec<f64>) {
+        if let Some(known) = known.filter(|k| k.freedoms == all) {
+            return (Arc::clone(known), sizes);
+        }
+        let place = |f: &Freedom| known.and_then(|k| k.freedoms.iter().position(|g| g == f).map(|i| &k.columns[i]));
+        let open: Vec<usize> = (0..all.len()).filter(|i| place(&all[*i]).is_none()).collect();
+        let open_freedoms: Vec<Freedom> = open.iter().map(|i| all[*i]).collect();
+        let open_sizes: Vec<f64> = open.iter().map(|i| sizes[*i]).collect();
+        let mut fresh = self.quotients(built, segment, r, (&open_freedoms, &open_sizes)).into_iter();
+        let column = |(i, f): (usize, &Freedom)| match place(f) {
+            Some(known) => known.clone(),
+            None => {
+                let (column, size) = fresh.next().unwrap_or_else(|| (DVector::zeros(r.len()), sizes[i]));
+                sizes[i] = size;
+                column
+            }
+        };
+        let columns = all.iter().enumerate().map(column).collect();
+        (Arc::new(StartColumns { freedoms: all.to_vec(), columns }), sizes)
+    }
+
+    /// The columns of a segment's start: those of the fit that it comes from, where it has them.
+    pub fn columns_of(&self, built: &Built, segment: &Segment, r: &DVector<f64>) -> Arc<StartColumns> {
+        let all = freedoms(built, &segment.start);
+        let sizes = all.iter().map(Freedom::first_step).collect();
+        self.start_columns_beside(built, segment, r, (&all, sizes), segment.columns.as_ref()).0
+    }
+
     fn linearise_segment(
         &self,
         built: &Built,
@@ -192,13 +222,7 @@ impl Stage<'_> {
         (all, sizes, known): (&[Freedom], Vec<f64>, Option<&Arc<StartColumns>>),
     ) -> (SegmentLinear, Vec<f64>) {
         let r = self.residuals(built, segment);
-        let (of_start, sizes) = match known {
-            Some(known) => (Arc::clone(known), sizes),
-            None => {
-                let (columns, sizes) = self.quotients(built, segment, &r, (all, &sizes)).into_iter().unzip();
-                (Arc::new(StartColumns { freedoms: all.to_vec(), columns }), sizes)
-            }
-        };
+        let (of_start, sizes) = self.start_columns_beside(built, segment, &r, (all, sizes), known);
         let of_model: Vec<DVector<f64>> = variations.par_iter().map(|v| self.column(v, segment, &r)).collect();
         let s: Vec<&DVector<f64>> = of_start.columns.iter().collect();
         let p: Vec<&DVector<f64>> = of_model.iter().chain(std::iter::once(&r)).collect();
@@ -239,7 +263,8 @@ pub fn eliminate(s: &[&DVector<f64>], p: &[&DVector<f64>], freedoms: &[Freedom])
     let scale = h_ss.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 });
     let mut scaled = DMatrix::from_fn(s.len(), s.len(), |i, j| h_ss[(i, j)] * scale[i] * scale[j]);
     for i in 0..s.len() {
-        scaled[(i, i)] += DAMPING + if scale[i] == 0.0 { 1.0 } else { 0.0 };
+        let held = freedoms.get(i).and_then(Freedom::reach).map_or(0.0, |reach| (scale[i] / reach).powi(2));
+        scaled[(i, i)] += DAMPING + held + if scale[i] == 0.0 { 1.0 } else { 0.0 };
     }
     let right = DMatrix::from_fn(s.len(), p.len(), |i, j| scale[i] * h_sp[(i, j)]);
     let taken = match scaled.cholesky() {

@@ -10,9 +10,8 @@
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{Fit, pseudo_inverse};
-use crate::linear::{Stage, Steps, Variation, eliminate};
+use crate::linear::{Stage, Variation, eliminate};
 use crate::plant::Plant;
-use crate::start::freedoms;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use scenario::spec::{Effect, ParamValue};
@@ -159,14 +158,13 @@ pub fn locate(stage: &Stage<'_>, plant: &Plant, fit: &Fit, places: Vec<Place>) -
         .segments
         .par_iter()
         .map(|segment| {
-            let all = freedoms(&fit.built, &segment.start);
             let r = stage.residuals(&fit.built, segment);
-            let s = stage.start_columns(&fit.built, segment, &r, &all, &mut Steps::default());
+            let start = stage.columns_of(&fit.built, segment, &r);
             let columns: Vec<Vec<DVector<f64>>> =
                 built.iter().map(|vs| vs.iter().map(|v| stage.column(v, segment, &r)).collect()).collect();
-            let starts: Vec<&DVector<f64>> = s.iter().collect();
+            let starts: Vec<&DVector<f64>> = start.columns.iter().collect();
             let others: Vec<&DVector<f64>> = columns.iter().flatten().chain(std::iter::once(&r)).collect();
-            let k = eliminate(&starts, &others, &all).reduced;
+            let k = eliminate(&starts, &others, &start.freedoms).reduced;
             split(&k, &columns.iter().map(Vec::len).collect::<Vec<_>>())
         })
         .collect();

@@ -23,8 +23,10 @@ pub struct Span {
 /// How finely a replay advances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pace {
-    /// Longest step, s.
+    /// Longest step while anything touches, s.
     pub step: f64,
+    /// Longest step in free flight, s.
+    pub free: f64,
 }
 
 /// Two instants closer than this are one, s.
@@ -96,13 +98,21 @@ fn gone(tape: &Tape, error: sim::StepError) -> DiagnoseError {
     DiagnoseError::Replay { file: tape.file.clone(), what: error.to_string() }
 }
 
-/// Advances to an instant in equal steps not longer than the pace.
+/// Advances to an instant in equal steps not longer than the pace: long ones as long as nothing touches.
 fn advance_to(world: &mut World, time: f64, pace: Pace) -> Result<(), sim::StepError> {
-    let left = time - world.state().time;
+    let parts = |left: f64, longest: f64| (left / longest - 1e-6).ceil().max(1.0) as u32;
+    let mut left = time - world.state().time;
+    while left > SAME && pace.free > pace.step {
+        let h = left / f64::from(parts(left, pace.free));
+        if !world.advance_free(h)? {
+            break;
+        }
+        left = time - world.state().time;
+    }
     if left <= SAME {
         return Ok(());
     }
-    let steps = (left / pace.step - 1e-6).ceil().max(1.0) as u32;
+    let steps = parts(left, pace.step);
     let h = left / f64::from(steps);
     for _ in 0..steps {
         world.advance_by(h)?;

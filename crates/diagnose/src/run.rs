@@ -8,7 +8,7 @@
 use crate::catalogue::hypotheses;
 use crate::diagnosis::{Diagnosis, Verdict};
 use crate::error::DiagnoseError;
-use crate::evidence::Evidence;
+use crate::evidence::{self, Evidence};
 use crate::facts::Facts;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::guess::guess;
@@ -16,11 +16,13 @@ use crate::hypothesis::Hypothesis;
 use crate::judge::{Judgement, judge};
 use crate::linear::{Segment, Stage, windows};
 use crate::locate::{Located, locate, places};
+use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::{Pace, Span};
 use crate::search::{Attempt, Limits, is_significant, search};
 use crate::tape::Tape;
 use crate::tell;
+use crate::work::{Watch, Work};
 use record::{RecordingSet, Role, Severity};
 use scenario::Scenario;
 use std::time::Instant;
@@ -35,7 +37,8 @@ pub(crate) struct Findings {
     pub attempts: Vec<Attempt>,
     pub verdict: Verdict,
     pub judgement: Judgement,
-    pub timings: Vec<(String, f64)>,
+    pub timings: Vec<evidence::Stage>,
+    pub discretisation: Discretisation,
 }
 
 /// Limits of the search.
@@ -45,30 +48,38 @@ const NEAR: f64 = 5.0;
 /// Share of the mismatch that may be left for a verdict of "partly explained".
 const PARTLY: f64 = 0.1;
 
-/// Diagnoses; `tell_stage` hears the name of each stage and the share of the work that is done when it begins.
+/// Diagnoses; `watch` hears how it goes.
 pub fn diagnose(
     scenario: Scenario,
     set: &RecordingSet,
-    tell_stage: &dyn Fn(&str, f64),
+    watch: &dyn Watch,
 ) -> Result<(Diagnosis, Evidence), DiagnoseError> {
-    let mut clock = Clock { begun: Instant::now(), timings: Vec::new(), tell: tell_stage };
+    let work = Work::new(watch);
+    let mut clock = Clock { begun: Instant::now(), last: (0.0, 0.0), work: &work, timings: Vec::new() };
     clock.stage("inspect the recording", 0.0);
     let inspection = record::inspect::inspect(set);
     refuse_foreign(&inspection)?;
     let mut plant = Plant::new(scenario);
     let (tapes, built) = load(&mut plant, set)?;
     let window = window_of(&set.rig, &tapes);
-    let stage = Stage { tapes: &tapes, pace: Pace { step: plant.scenario.integrator.step_s } };
-    clock.stage("fit the starts of the nominal model", 0.05);
+    let own = plant.scenario.integrator.step_s;
+    let stage = Stage { tapes: &tapes, pace: Pace { step: own, free: own }, work: &work };
+    clock.stage("choose the step", 0.03);
     let segments = cut(&built, &tapes, Some(window), |t| t.role == Role::Fit);
+    let discretisation = pace::choose(&stage, &built, &segments, own);
+    let Discretisation { pace, worst } = discretisation;
+    work.watch.step(&format!("steps of {:.3e} s, {:.3e} s in free flight: halving them moves {worst:.1e}", pace.step, pace.free));
+    let stage = Stage { pace, ..stage };
+    clock.stage("fit the starts of the nominal model", 0.05);
     let nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort::STARTS)?;
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
     clock.stage("search in windows", 0.25);
     let candidates = |now: &Fit| promising(&located, hypotheses(&Facts::new(&now.built, &tapes)));
-    let (in_windows, mut attempts) = search(&stage, &plant, nominal.clone(), &candidates, &LIMITS)?;
+    let some = representative(&stage, &nominal);
+    let (in_windows, mut attempts) = search(&stage, &plant, some, &candidates, &LIMITS)?;
     clock.stage("search over whole runs", 0.6);
-    let whole = fit(&stage, &plant, in_windows.set.clone(), joined(&in_windows, &tapes), Effort::STARTS)?;
+    let whole = fit(&stage, &plant, in_windows.set.clone(), joined(&nominal, &tapes), Effort::STARTS)?;
     let follows = whole.rms() < DIVERGED;
     let (found, more) =
         if follows { search(&stage, &plant, whole, &candidates, &LIMITS)? } else { (in_windows, Vec::new()) };
@@ -86,6 +97,7 @@ pub fn diagnose(
         attempts,
         judgement,
         timings: clock.timings,
+        discretisation,
     };
     Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
 }
@@ -95,18 +107,23 @@ const DIVERGED: f64 = 300.0;
 
 struct Clock<'a> {
     begun: Instant,
-    timings: Vec<(String, f64)>,
-    tell: &'a dyn Fn(&str, f64),
+    last: (f64, f64),
+    work: &'a Work<'a>,
+    timings: Vec<evidence::Stage>,
 }
 
 impl Clock<'_> {
+    /// Ends the last stage and begins one.
     fn stage(&mut self, name: &str, share: f64) {
-        let now = self.begun.elapsed().as_secs_f64();
+        let now = (self.begun.elapsed().as_secs_f64(), self.work.total().1);
         if let Some(last) = self.timings.last_mut() {
-            last.1 = now - last.1;
+            (last.wall_s, last.simulated_s) = (now.0 - self.last.0, now.1 - self.last.1);
         }
-        self.timings.push((name.to_owned(), now));
-        (self.tell)(name, share);
+        let speed = (now.1 - self.last.1) / (now.0 - self.last.0);
+        self.work.watch.step(&format!("{:.1} s simulated, {speed:.0} times real time", now.1 - self.last.1));
+        self.last = now;
+        self.timings.push(evidence::Stage { name: name.to_owned(), wall_s: 0.0, simulated_s: 0.0 });
+        self.work.watch.stage(name, share);
     }
 }
 
@@ -164,6 +181,30 @@ pub(crate) fn joined(fit: &Fit, tapes: &[Tape]) -> Vec<Segment> {
         .map(|s| Segment { span: Span { from: s.span.from, to: tapes[s.run].span.1 }, columns: None, ..s.clone() })
         .collect()
 }
+
+/// Windows that speak for all in a search: those in which most is amiss, and an even selection.
+fn representative(stage: &Stage<'_>, fit: &Fit) -> Fit {
+    if fit.segments.len() <= 2 * SPOKESMEN {
+        return fit.clone();
+    }
+    let excess = |s: &Segment| {
+        let r = stage.residuals(&fit.built, s);
+        r.norm_squared() - r.len() as f64
+    };
+    let mut order: Vec<(usize, f64)> = fit.segments.iter().map(excess).enumerate().collect();
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut chosen: Vec<usize> = order.iter().take(SPOKESMEN).map(|o| o.0).collect();
+    chosen.extend((0..SPOKESMEN).map(|k| (2 * k + 1) * fit.segments.len() / (2 * SPOKESMEN)));
+    chosen.sort_unstable();
+    chosen.dedup();
+    let segments: Vec<Segment> = chosen.iter().map(|i| fit.segments[*i].clone()).collect();
+    let (cost, count) = stage.cost(&fit.built, &segments);
+    let freedom = fit.freedom * segments.len() / fit.segments.len();
+    Fit { segments, cost, count, freedom, ..fit.clone() }
+}
+
+/// Windows of either kind.
+const SPOKESMEN: usize = 12;
 
 /// Effects at joints where no force is missing are not looked at: an arm has many places.
 fn promising(located: &Located, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {

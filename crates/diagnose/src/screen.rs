@@ -10,7 +10,7 @@
 use crate::error::DiagnoseError;
 use crate::fit::{Fit, pseudo_inverse, vary};
 use crate::hypothesis::{Hypothesis, Scale, ScreenPoint};
-use crate::linear::{Segment, Stage, Steps, Variation, eliminate};
+use crate::linear::{Segment, Stage, Variation, eliminate};
 use crate::plant::{Built, Plant};
 use crate::start::{Freedom, freedoms};
 use nalgebra::{DMatrix, DVector};
@@ -29,6 +29,13 @@ pub struct Score {
     pub rank: usize,
     /// Coordinates to begin a refit with.
     pub start: Vec<f64>,
+}
+
+/// A column of a screen point.
+struct Probe {
+    variation: Variation,
+    /// Steps of the memory that it brings, where its starts are to be freed.
+    memory: Option<Vec<f64>>,
 }
 
 /// Root mean square (units of noise) that a column's step shall have on the pilot segments.
@@ -60,7 +67,7 @@ fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     let active = vary(plant, &fit.set, &slots, &sizes)?;
     let points: Vec<(usize, usize)> =
         all.iter().enumerate().flat_map(|(h, hyp)| (0..hyp.screens.len()).map(move |p| (h, p))).collect();
-    let probes: Vec<Vec<Variation>> =
+    let probes: Vec<Vec<Probe>> =
         points.par_iter().map(|(h, p)| probes_of(stage, plant, fit, &all[*h], &all[*h].screens[*p])).collect();
     let products = sum_products(stage, fit, &active, &probes);
     let scores = points.iter().zip(&probes).zip(products).filter_map(|((at, probes), k)| {
@@ -89,7 +96,7 @@ fn probes_of(
     fit: &Fit,
     hypothesis: &Hypothesis,
     point: &ScreenPoint,
-) -> Vec<Variation> {
+) -> Vec<Probe> {
     let build = |base: &[f64], direction: &[f64], step: f64| -> Option<Variation> {
         let x: Vec<f64> = base.iter().zip(direction).map(|(b, d)| b + step * d).collect();
         let mut effects = fit.set.effects();
@@ -107,7 +114,19 @@ fn probes_of(
         let variation = if near { first } else { build(&c.base, &c.direction, step)? };
         Some(variation)
     };
-    point.columns.iter().filter_map(tuned).collect()
+    let mut probes: Vec<Probe> =
+        point.columns.iter().filter_map(tuned).map(|variation| Probe { variation, memory: None }).collect();
+    // Memory is much the same in all columns of a point: two of them tell its starts.
+    let pilot = &fit.segments[fit.segments.len() / 2];
+    for probe in probes.iter_mut().step_by(3).take(2) {
+        let base = freedoms(&fit.built, &pilot.start);
+        let own = freedoms(&probe.variation.built, &pilot.start.fitted_to(&probe.variation.built));
+        if own.iter().any(|f| !base.contains(f)) {
+            probe.memory = Some(Vec::new());
+            probe.memory = Some(own_columns(stage, pilot, &base, probe).1);
+        }
+    }
+    probes
 }
 
 /// Root mean square of what a changed model does to a few segments.
@@ -122,7 +141,7 @@ fn pilot_size(stage: &Stage<'_>, fit: &Fit, built: &Built) -> f64 {
 }
 
 /// Reduced products of (active, columns, r) of every point, summed over the segments.
-fn sum_products(stage: &Stage<'_>, fit: &Fit, active: &[Variation], probes: &[Vec<Variation>]) -> Vec<DMatrix<f64>> {
+fn sum_products(stage: &Stage<'_>, fit: &Fit, active: &[Variation], probes: &[Vec<Probe>]) -> Vec<DMatrix<f64>> {
     let of_segment: Vec<Vec<DMatrix<f64>>> =
         fit.segments.par_iter().map(|segment| products_of(stage, fit, segment, active, probes)).collect();
     (0..probes.len())
@@ -138,18 +157,16 @@ fn products_of(
     fit: &Fit,
     segment: &Segment,
     active: &[Variation],
-    probes: &[Vec<Variation>],
+    probes: &[Vec<Probe>],
 ) -> Vec<DMatrix<f64>> {
-    let base = freedoms(&fit.built, &segment.start);
     let r = stage.residuals(&fit.built, segment);
-    let mut steps = Steps::default();
-    let s = stage.start_columns(&fit.built, segment, &r, &base, &mut steps);
+    let start = stage.columns_of(&fit.built, segment, &r);
     let g: Vec<DVector<f64>> = active.par_iter().map(|v| stage.column(v, segment, &r)).collect();
-    let of_point = |probes: &Vec<Variation>| {
-        let columns: Vec<DVector<f64>> = probes.iter().map(|p| stage.column(p, segment, &r)).collect();
+    let of_point = |probes: &Vec<Probe>| {
+        let columns: Vec<DVector<f64>> = probes.iter().map(|p| stage.column(&p.variation, segment, &r)).collect();
         let own: Vec<DVector<f64>> =
-            probes.iter().step_by(3).take(2).flat_map(|p| own_columns(stage, segment, &base, p)).collect();
-        let starts: Vec<&DVector<f64>> = s.iter().chain(&own).collect();
+            probes.iter().flat_map(|p| own_columns(stage, segment, &start.freedoms, p).0).collect();
+        let starts: Vec<&DVector<f64>> = start.columns.iter().chain(&own).collect();
         let others: Vec<&DVector<f64>> = g.iter().chain(&columns).chain(std::iter::once(&r)).collect();
         let names = vec![Freedom::Memory(0); starts.len()];
         eliminate(&starts, &others, &names).reduced
@@ -157,24 +174,28 @@ fn products_of(
     probes.par_iter().map(of_point).collect()
 }
 
-/// Columns of the memory that a hypothesis brings.
-fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: &Variation) -> Vec<DVector<f64>> {
-    let built = &probe.built;
-    let own: Vec<Freedom> =
-        freedoms(built, &segment.start.fitted_to(built)).into_iter().filter(|f| !base.contains(f)).collect();
-    if own.is_empty() {
-        return Vec::new();
-    }
+/// Columns of the memory that a hypothesis brings, and the steps over which they were taken.
+fn own_columns(
+    stage: &Stage<'_>,
+    segment: &Segment,
+    base: &[Freedom],
+    probe: &Probe,
+) -> (Vec<DVector<f64>>, Vec<f64>) {
+    let Some(steps) = &probe.memory else { return Default::default() };
+    let built = &probe.variation.built;
     let moved = Segment { start: segment.start.fitted_to(built), ..segment.clone() };
+    let own: Vec<Freedom> = freedoms(built, &moved.start).into_iter().filter(|f| !base.contains(f)).collect();
     let r = stage.residuals(built, &moved);
-    stage.start_columns(built, &moved, &r, &own, &mut Steps::default())
+    let first: Vec<f64> =
+        own.iter().enumerate().map(|(i, f)| steps.get(i).copied().unwrap_or_else(|| f.first_step())).collect();
+    stage.quotients(built, &moved, &r, (&own, &first)).into_iter().unzip()
 }
 
 /// Promise, rank and first coordinates of a point.
 fn score(
     hypothesis: &Hypothesis,
     point: &ScreenPoint,
-    probes: &[Variation],
+    probes: &[Probe],
     k: &DMatrix<f64>,
     (active, count): (usize, usize),
 ) -> Option<(f64, usize, Vec<f64>)> {
@@ -186,7 +207,7 @@ fn score(
     // A column that its step does not even move by a thousandth of the noise is rounding, not physics.
     let last = k.ncols() - 1;
     for (i, probe) in probes.iter().enumerate() {
-        let moved = probe.step.abs() * (k[(active + i, active + i)].max(0.0) / count as f64).sqrt();
+        let moved = probe.variation.step.abs() * (k[(active + i, active + i)].max(0.0) / count as f64).sqrt();
         if moved < SILENT {
             (0..=last).for_each(|j| {
                 k[(active + i, j)] = 0.0;

@@ -84,6 +84,7 @@ pub fn search(
         let is_active = |h: &Hypothesis| now.set.members.iter().any(|(m, _)| m.title() == h.title());
         let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) =
             hypotheses(&now).into_iter().filter(|h| !is_active(h)).partition(|h| h.is_dear);
+        stage.work.watch.step(&format!("screen {} hypotheses beside error {:.3}", cheap.len() + dear.len(), now.rms()));
         let scores = screen(stage, plant, &now, &cheap)?;
         let (mut best, mut tried) = refit_best(stage, plant, &now, (&cheap, &scores), (limits, round))?;
         // What is dear to screen is screened only where the rest leaves something.
@@ -103,6 +104,7 @@ pub fn search(
         tried.iter_mut().for_each(|t| t.kept = format!("{} at {}", t.name, t.place) == added);
         attempts.append(&mut tried);
         now = fit(stage, plant, best.set, best.segments, WHOLE)?;
+        stage.work.watch.step(&format!("kept {added}: error {:.3}", now.rms()));
         now = prune(stage, plant, now)?;
         round += 1;
     }
@@ -139,8 +141,10 @@ fn refit_best(
         let is_done = best.as_ref().is_some_and(|b| !is_significant(b, limits));
         let hopeless = is_done && score.score < RIVAL * attempts.first().map_or(0.0, |a: &Attempt| a.score);
         if !hopeless && picked.iter().any(|p| std::ptr::eq(*p, score)) {
-            let Some(start) = possible(plant, now, h, &score.start) else { continue };
+            let Some(start) = possible(stage, plant, now, h, &score.start) else { continue };
             let Ok(tried) = fit(stage, plant, now.set.with(h, &start), now.segments.clone(), LOOK) else { continue };
+            let said = format!("refit {}: error {:.3} → {:.3}", h.title(), now.rms(), tried.rms());
+            stage.work.watch.step(&said);
             attempt.fall = Some(now.cost - tried.cost);
             attempt.gain = Some(criterion(now) - criterion(&tried));
             attempt.found = tried.set.members.last().map(|m| m.1.clone()).unwrap_or_default();
@@ -154,14 +158,25 @@ fn refit_best(
     Ok((best, attempts))
 }
 
-/// Coordinates that can be built: those given, or nearer to neutral (a screen may promise a part heavier than its body).
-fn possible(plant: &Plant, now: &Fit, h: &Hypothesis, start: &[f64]) -> Option<Vec<f64>> {
+/// Coordinates to begin a refit with: those that were promised, or nearer to neutral where these cannot be built or the starts
+/// cannot follow them (a screen is linear, and may promise a part heavier than its body).
+fn possible(stage: &Stage<'_>, plant: &Plant, now: &Fit, h: &Hypothesis, promised: &[f64]) -> Option<Vec<f64>> {
     let neutral = h.neutral();
-    (0..8).map(|k| 0.5f64.powi(k)).find_map(|share| {
-        let x: Vec<f64> = start.iter().zip(&neutral).map(|(x, n)| n + share * (x - n)).collect();
-        plant.build(&now.set.with(h, &x).effects()).is_ok().then_some(x)
-    })
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    for share in (0..SHARES).map(|k| 0.5f64.powi(k)) {
+        let x: Vec<f64> = promised.iter().zip(&neutral).map(|(x, n)| n + share * (x - n)).collect();
+        let Ok(built) = plant.build(&now.set.with(h, &x).effects()) else { continue };
+        let (_, cost) = stage.settle(&built, &now.segments);
+        if best.as_ref().is_some_and(|b| cost >= b.0) {
+            break;
+        }
+        best = Some((cost, x));
+    }
+    best.map(|b| b.1)
 }
+
+/// Halvings of a promise.
+const SHARES: i32 = 5;
 
 /// The best screen point of each hypothesis, best first.
 fn scores_of_interest<'s>(all: &[Hypothesis], scores: &'s [Score]) -> Vec<&'s Score> {

@@ -10,8 +10,10 @@ use spatial::{Pose, Twist, Vec3, exp_rotation};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Slip below which a bristle counts as on its way, m/s.
-const CRAWL: f64 = 1e-4;
+/// Deflection by which a bristle's pull is tried, m.
+const PULL: f64 = 1e-6;
+/// A step too short to move anything, s.
+const INSTANT: f64 = 1e-7;
 
 /// Where a replay starts.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +65,11 @@ impl Freedom {
             Self::Bristle(..) => 1e-8,
         }
     }
+
+    /// How far a step of an estimate may trust its linear model, its own unit; `None`: as far as it leads.
+    pub fn reach(&self) -> Option<f64> {
+        matches!(self, Self::Bristle(..)).then_some(1e-4)
+    }
 }
 
 impl Start {
@@ -110,16 +117,72 @@ impl Start {
         world
     }
 
-    /// Frees the bristles of the points that touch, each dragged along where its point slides.
-    pub fn free_bristles(&mut self, built: &Built, run: usize) {
-        let mut world = self.world(built, run);
+    /// Frees the bristles of the points that touch: of each pair the common deflection whose force gives the bodies the accelerations
+    /// that were measured (base by base, m/s² and rad/s², W axes; `None` where nothing measures it), as far as the pair can hold it.
+    pub fn free_bristles(&mut self, built: &Built, run: usize, measured: &[Option<Twist>]) {
+        self.bristles.clear();
         let reach = RefCell::new(Vec::new());
-        world.seed_bristles(|_, touch| {
-            reach.borrow_mut().push((touch.pair, touch.normal_force, touch.point_w));
+        self.world(built, run).seed_bristles(|_, touch| {
+            let model = &built.model;
+            let reaches = match model.laws[touch.pair].friction {
+                Some(Friction::Bristle(law)) => law.calc_reach(touch.normal_force, 0.0),
+                _ => 0.0,
+            };
+            reach.borrow_mut().push((touch.pair, reaches, touch.normal_w));
             Vec3::zeros()
         });
-        self.bristles =
-            reach.into_inner().iter().map(|(pair, force, point)| dragged(&world, *pair, *force, point)).collect();
+        let points = reach.into_inner();
+        let mut pairs: Vec<usize> = points.iter().map(|p| p.0).collect();
+        pairs.dedup();
+        self.bristles = vec![Vec3::zeros(); points.len()];
+        for pair in pairs {
+            let of_pair: Vec<usize> = (0..points.len()).filter(|i| points[*i].0 == pair).collect();
+            let Some((_, largest, normal)) = of_pair.first().map(|i| points[*i]) else { continue };
+            let s = self.balanced(built, run, (&of_pair, &normal), measured);
+            let s = if s.norm() > largest { s * (largest / s.norm()) } else { s };
+            of_pair.iter().for_each(|i| self.bristles[*i] = s);
+        }
+    }
+
+    /// Common deflection of some points that comes nearest to the measured accelerations.
+    fn balanced(
+        &self,
+        built: &Built,
+        run: usize,
+        (points, normal): (&[usize], &Vec3),
+        measured: &[Option<Twist>],
+    ) -> Vec3 {
+        let accelerations = |s: Vec3| {
+            let mut start = self.clone();
+            points.iter().for_each(|i| start.bristles[*i] = s);
+            start.accelerations(built, run)
+        };
+        let bare = accelerations(Vec3::zeros());
+        let along = normal.cross(&if normal.x.abs() < 0.7 { Vec3::x() } else { Vec3::y() }).normalize();
+        let axes = [along, normal.cross(&along)];
+        let pulled = axes.map(|axis| accelerations(axis * PULL));
+        let (mut a, mut b) = (nalgebra::Matrix2::<f64>::zeros(), nalgebra::Vector2::<f64>::zeros());
+        for (v, seen) in measured.iter().enumerate() {
+            let Some(seen) = seen else { continue };
+            let column = |k: usize| (pulled[k][v].lin - bare[v].lin) / PULL;
+            let missing = seen.lin - bare[v].lin;
+            for k in 0..2 {
+                b[k] += column(k).dot(&missing);
+                (0..2).for_each(|l| a[(k, l)] += column(k).dot(&column(l)));
+            }
+        }
+        let x = a.try_inverse().map_or(nalgebra::Vector2::zeros(), |inverse| inverse * b);
+        if x.iter().all(|x| x.is_finite()) { axes[0] * x[0] + axes[1] * x[1] } else { Vec3::zeros() }
+    }
+
+    /// Accelerations of the bases at the start, by a step too short to move anything.
+    fn accelerations(&self, built: &Built, run: usize) -> Vec<Twist> {
+        let mut world = self.world(built, run);
+        let twists = |world: &World| (0..self.bases.len()).map(|v| world.kinematics(v).vel[0]).collect::<Vec<_>>();
+        let before = twists(&world);
+        let gone = world.advance_by(INSTANT).is_err();
+        let change = |(a, b): (Twist, &Twist)| if gone { Twist::default() } else { (a - *b) * (1.0 / INSTANT) };
+        twists(&world).into_iter().zip(&before).map(change).collect()
     }
 
     /// Sets the memory of effects: its rest under the world's present commands, and the deviation from it.
@@ -155,7 +218,8 @@ impl Start {
             Freedom::Speed(b, axis) => self.twists[b].lin += along(axis),
             Freedom::Joint(i) => self.q[i] += by,
             Freedom::Rate(i) => self.v[i] += by,
-            Freedom::Memory(i) => self.memory[i] += by,
+            // A slot of an effect that has been taken out moves nothing.
+            Freedom::Memory(i) => self.memory.get_mut(i).into_iter().for_each(|m| *m += by),
             Freedom::Bristle(i, axis) => self.bristles[i] += along(axis),
         }
     }
@@ -163,21 +227,6 @@ impl Start {
 
 fn count_memory(built: &Built) -> usize {
     built.start.effects.len()
-}
-
-/// Where a sliding point's bristle is: at its bound, along the slip; in the middle where it hardly moves.
-fn dragged(world: &World, pair: usize, normal_force: f64, point: &Vec3) -> Vec3 {
-    let model = world.model();
-    let Some(Friction::Bristle(law)) = model.laws[pair].friction else { return Vec3::zeros() };
-    let (a, b) = model.pair_bodies(pair);
-    let velocity = |body: usize| {
-        model.owners.get(body).map_or(Vec3::zeros(), |&(vehicle, local)| {
-            let kin = world.kinematics(vehicle);
-            kin.vel[local].at(&(point - kin.anchor))
-        })
-    };
-    let slip = velocity(b) - velocity(a);
-    slip / (slip.norm() + CRAWL) * law.calc_reach(normal_force, 0.0)
 }
 
 /// A freedom of a base by its vehicle and axis.

@@ -43,21 +43,22 @@ pub(crate) fn tell(
     let evidence = Evidence {
         title: findings.title.clone(),
         quality: inspection.remarks.iter().map(quality).collect(),
-        discretisation: None,
+        discretisation: Some(discretisation(findings)),
         heat: heat(findings, stage),
         curves: crate::curves::curves(findings, stage),
         forces: crate::curves::forces(findings, stage),
         ranking: ranking(findings),
         parameters: parameters(findings),
         correlation: correlation(&findings.found.covariance),
-        timings: findings
-            .timings
-            .iter()
-            .map(|(name, wall)| evidence::Stage { name: name.clone(), wall_s: *wall, simulated_s: f64::NAN })
-            .collect(),
+        timings: findings.timings.clone(),
         ..Evidence::default()
     };
     (diagnosis, evidence)
+}
+
+fn discretisation(findings: &Findings) -> evidence::Discretisation {
+    let found = findings.discretisation;
+    evidence::Discretisation { step_s: found.pace.step, window_s: findings.window, error: found.worst, bound: 0.1 }
 }
 
 fn quality(remark: &record::Remark) -> Remark {

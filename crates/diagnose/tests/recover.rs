@@ -106,7 +106,7 @@ fn effect(name: &str, place: &str, params: &[(&str, ParamValue)]) -> Effect {
 fn diagnose_planted(effects: &[Effect]) -> Diagnosis {
     let folder = tempfile::tempdir().unwrap();
     let set = record_tumbler(effects, folder.path());
-    diagnose::diagnose(tumbler().scenario, &set, &|_, _| {}).unwrap().0
+    diagnose::diagnose(tumbler().scenario, &set, &()).unwrap().0
 }
 
 fn value(diagnosis: &Diagnosis, parameter: &str, k: usize) -> f64 {

@@ -163,6 +163,23 @@ impl World {
         }
     }
 
+    /// Advances by one step of `h` s if nothing touches in it; else leaves the world as it was and says `false`.
+    ///
+    /// What flies freely bears longer steps than what touches: a caller tries a long one, and makes short ones where it fails.
+    pub fn advance_free(&mut self, h: f64) -> Result<bool, StepError> {
+        if self.ws.touches.is_empty() {
+            self.advance_by(h)?;
+            if self.ws.touches.is_empty() {
+                return Ok(true);
+            }
+            self.state.copy_from(&self.ws.backup);
+            self.ws.touches.clear();
+            self.is_fresh = false;
+            self.refresh();
+        }
+        Ok(false)
+    }
+
     /// The effects' memory in the coordinates of [`crate::memory_layout`], at the last refreshed state.
     pub fn effect_memory(&self) -> Vec<f64> {
         effect::calc_relative(&self.model, &self.state, &self.ws)

@@ -70,7 +70,10 @@ fn add_periodic(place: &str, facts: &Facts, all: &mut Vec<Hypothesis>) {
     let columns = [(vec![(0, 1.0)], SMALL), (vec![(1, 1.0)], SMALL)];
     let orders = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0];
     all.push(
-        hypothesis("joint-torque-ripple", place, ripple).encoded(Encoding::Phasor).screened_on(2, &orders, &columns),
+        hypothesis("joint-torque-ripple", place, ripple)
+            .encoded(Encoding::Phasor)
+            .screened_on(2, &orders, &columns)
+            .dear(),
     );
     let wave = vec![
         Coordinate::free("amplitude", 0.0),
@@ -78,5 +81,10 @@ fn add_periodic(place: &str, facts: &Facts, all: &mut Vec<Hypothesis>) {
         Coordinate::log("frequency", 1.0, [1.0 / facts.duration.max(1.0), 200.0]),
     ];
     let grid = log_grid(0.5, 32.0, 1.0);
-    all.push(hypothesis("periodic-disturbance", place, wave).encoded(Encoding::Phasor).screened_on(2, &grid, &columns));
+    all.push(
+        hypothesis("periodic-disturbance", place, wave)
+            .encoded(Encoding::Phasor)
+            .screened_on(2, &grid, &columns)
+            .dear(),
+    );
 }

@@ -1,0 +1,77 @@
+//! How finely replays advance: the diagnosis' own error against the noise of the sensors.
+//!
+//! The step is halved, from the longest stretch that no sample and no command cuts, until a replay and one of half its step differ by less
+//! than a small part of the noise over every window. Steps of free flight are chosen alike, with those in contact held.
+
+use crate::linear::{Segment, Stage};
+use crate::plant::Built;
+use crate::replay::Pace;
+use crate::tape::Tape;
+use rayon::prelude::*;
+
+/// Difference (rms over a window, units of noise) that a halved step may make.
+pub const TOLERANCE: f64 = 0.05;
+/// Halvings of the scenario's own step that are tried beyond it.
+const FINER: u32 = 2;
+/// Free flight bears steps as many times longer as this.
+const FREE: f64 = 16.0;
+/// Windows that are looked at.
+const WINDOWS: usize = 24;
+
+/// What the check found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Discretisation {
+    /// The steps that were chosen.
+    pub pace: Pace,
+    /// Largest rms difference from steps of half the length, over any window, units of noise.
+    pub worst: f64,
+}
+
+/// The coarsest steps whose halves tell the same; `own` is the scenario's step, s.
+pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> Discretisation {
+    let every = segments.len().div_ceil(WINDOWS).max(1);
+    let some: Vec<&Segment> = segments.iter().skip(every / 2).step_by(every).collect();
+    let mut step = stage.tapes.iter().map(longest_stretch).fold(own, f64::max);
+    let finest = own * 0.5f64.powi(FINER as i32);
+    let even = |step: f64| Pace { step, free: step };
+    let mut worst = calc_worst(stage, built, &some, even(step));
+    while worst > TOLERANCE && 0.5 * step > finest {
+        step *= 0.5;
+        worst = calc_worst(stage, built, &some, even(step));
+    }
+    let mut free = FREE * step;
+    while free > step {
+        let pace = Pace { step, free };
+        let moved = calc_difference(stage, built, &some, [pace, even(step)]);
+        if moved <= TOLERANCE {
+            worst = worst.max(moved);
+            break;
+        }
+        free *= 0.5;
+    }
+    Discretisation { pace: Pace { step, free: free.max(step) }, worst }
+}
+
+/// Largest difference from steps of half the length.
+pub fn calc_worst(stage: &Stage<'_>, built: &Built, segments: &[&Segment], pace: Pace) -> f64 {
+    let half = Pace { step: 0.5 * pace.step, free: 0.5 * pace.free };
+    calc_difference(stage, built, segments, [pace, half])
+}
+
+fn calc_difference(stage: &Stage<'_>, built: &Built, segments: &[&Segment], paces: [Pace; 2]) -> f64 {
+    let of = |segment: &&Segment| {
+        let [a, b] = paces.map(|pace| Stage { pace, ..*stage }.residuals(built, segment));
+        let difference = (a - b).norm_squared() / stage.count(segment).max(1) as f64;
+        if difference.is_finite() { difference.sqrt() } else { f64::INFINITY }
+    };
+    segments.par_iter().map(of).reduce(|| 0.0, f64::max)
+}
+
+/// The longest stretch between two instants at which a sensor reads or a command changes, s; gaps in the data left out.
+fn longest_stretch(tape: &Tape) -> f64 {
+    let mut stops: Vec<f64> = tape.events.iter().map(|e| e.time).chain(tape.ticks.iter().copied()).collect();
+    stops.sort_by(f64::total_cmp);
+    let mut stretches: Vec<f64> = stops.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 1e-9).collect();
+    stretches.sort_by(f64::total_cmp);
+    stretches.get(stretches.len() * 9 / 10).copied().unwrap_or(0.0)
+}

@@ -1,0 +1,163 @@
+//! Starts under a given model: each segment's own least squares, for itself.
+//!
+//!   (H_ss + λ diag H_ss) δx₀ = −Sᵀ r
+//!
+//! A segment whose events do not yet follow the model stays behind without holding up the others.
+
+use crate::linear::{Segment, SegmentLinear, Stage, StartColumns, eliminate};
+use crate::plant::Built;
+use crate::start::freedoms;
+use nalgebra::DVector;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Rounds in which starts follow a changed model along old columns.
+const SETTLINGS: usize = 2;
+/// Most dampings tried for one linearisation.
+const DAMPINGS: usize = 6;
+/// Promised fall of a segment's cost below which its start has converged, variances of noise.
+const NEXT_TO_NOTHING: f64 = 0.1;
+
+/// A segment with its start at its best.
+#[derive(Clone, Debug)]
+pub struct Settled {
+    /// The segment, with the columns of its last linearisation.
+    pub segment: Segment,
+    /// Squared norm of its residual.
+    pub cost: f64,
+    /// Coordinates of the start that the residual shows.
+    pub shown: usize,
+    /// Linearisations made.
+    pub iterations: usize,
+    /// Whether the last step promised next to nothing.
+    pub converged: bool,
+}
+
+impl Stage<'_> {
+    /// Fits every start, `iterations` linearisations at most, until one promises less than `share` of the segment's excess.
+    pub fn fit_starts(&self, built: &Built, segments: &[Segment], (iterations, share): (usize, f64)) -> Vec<Settled> {
+        // The first segment finds the steps of the difference quotients for all.
+        let Some((first, others)) = segments.split_first() else { return Vec::new() };
+        let (first, sizes) = self.fit_start(built, first, &[], (iterations, share));
+        let of = |s: &Segment| self.fit_start(built, s, &sizes, (iterations, share)).0;
+        std::iter::once(first).chain(others.par_iter().map(of).collect::<Vec<_>>()).collect()
+    }
+
+    fn fit_start(
+        &self,
+        built: &Built,
+        segment: &Segment,
+        sizes: &[f64],
+        (iterations, share): (usize, f64),
+    ) -> (Settled, Vec<f64>) {
+        let start = segment.start.fitted_to(built);
+        let all = freedoms(built, &start);
+        let mut sizes: Vec<f64> = if sizes.len() == all.len() {
+            sizes.to_vec()
+        } else {
+            all.iter().map(|f| f.first_step()).collect()
+        };
+        let mut segment = Segment { start, ..segment.clone() };
+        let mut r = self.residuals(built, &segment);
+        let mut now = (finite(r.norm_squared()), 0, 0, false);
+        let mut damping = 0.0;
+        while now.2 < iterations && !now.3 {
+            let (columns, used) = self.quotients(built, &segment, &r, (&all, &sizes)).into_iter().unzip();
+            sizes = used;
+            let columns: Vec<DVector<f64>> = columns;
+            now.2 += 1;
+            let shown = columns.iter().filter(|c| c.norm_squared() > 0.0).count();
+            let linear = eliminate(&columns.iter().collect::<Vec<_>>(), &[&r], &all);
+            segment.columns = Some(Arc::new(StartColumns { freedoms: all.clone(), columns }));
+            now.1 = shown;
+            let excess = (now.0 - r.len() as f64).max(0.0);
+            let promised = now.0 - linear.reduced[(0, 0)];
+            if promised.is_nan() || promised < NEXT_TO_NOTHING.max(share * excess) {
+                now.3 = true;
+                break;
+            }
+            let Some((moved, after, used)) = self.downhill(built, &segment, &linear, (now.0, damping)) else { break };
+            damping = used;
+            now.3 = now.0 - after.norm_squared() < NEXT_TO_NOTHING.max(share * excess);
+            (segment, now.0, r) = (moved, finite(after.norm_squared()), after);
+        }
+        let (cost, shown, iterations, converged) = now;
+        (Settled { segment, cost, shown, iterations, converged }, sizes)
+    }
+
+    /// The first step that lowers the cost: the full one, then shorter ones.
+    fn downhill(
+        &self,
+        built: &Built,
+        segment: &Segment,
+        linear: &SegmentLinear,
+        (cost, damping): (f64, f64),
+    ) -> Option<(Segment, DVector<f64>, f64)> {
+        let step = linear.start_step(&[]);
+        let known = &segment.columns.as_ref()?.freedoms;
+        let mut share = if damping > 0.0 { (2.0 * damping).min(1.0) } else { 1.0 };
+        for _ in 0..DAMPINGS {
+            let by: Vec<f64> = step.iter().map(|d| d * share).collect();
+            let moved = Segment { start: segment.start.retract(known, &by), ..segment.clone() };
+            let r = self.residuals(built, &moved);
+            if r.norm_squared() < cost {
+                return Some((moved, r, share));
+            }
+            share *= 0.3;
+        }
+        None
+    }
+
+    /// Segments whose starts have followed a changed model as far as their old columns tell, and their cost.
+    pub fn settle(&self, built: &Built, segments: &[Segment]) -> (Vec<Segment>, f64) {
+        let of = |segment: &Segment| {
+            let mut now = Segment { start: segment.start.fitted_to(built), ..segment.clone() };
+            let mut r = self.residuals(built, &now);
+            let mut cost = finite(r.norm_squared());
+            let Some(known) = &segment.columns else { return (now, cost) };
+            for _ in 0..SETTLINGS {
+                let s: Vec<&DVector<f64>> = known.columns.iter().collect();
+                let linear = eliminate(&s, &[&r], &known.freedoms);
+                let Some((moved, after, _)) = self.downhill(built, &now, &linear, (cost, 0.3)) else { break };
+                (now, cost, r) = (moved, finite(after.norm_squared()), after);
+            }
+            (now, cost)
+        };
+        let (segments, costs): (Vec<Segment>, Vec<f64>) = segments.par_iter().map(of).unzip();
+        (segments, costs.iter().sum())
+    }
+
+    /// Segments after a step of the parameters: each start goes where its linear model says, or stays where that is worse.
+    pub fn follow(
+        &self,
+        built: &Built,
+        segments: &[Segment],
+        linear: &[SegmentLinear],
+        theta: &[f64],
+    ) -> (Vec<Segment>, f64) {
+        let of = |(segment, linear): (&Segment, &SegmentLinear)| {
+            let step = linear.start_step(theta);
+            let mut best: Option<(Segment, f64)> = None;
+            for share in [1.0, 0.4, 0.0] {
+                let by: Vec<f64> = step.iter().map(|d| d * share).collect();
+                let moved = Segment { start: segment.start.retract(&linear.freedoms, &by), ..segment.clone() };
+                let cost = finite(self.residuals(built, &moved).norm_squared());
+                let is_fair = cost <= linear.cost + NEXT_TO_NOTHING;
+                if best.as_ref().is_none_or(|b| cost < b.1) {
+                    best = Some((moved, cost));
+                }
+                if is_fair {
+                    break;
+                }
+            }
+            best.unwrap_or_else(|| (segment.clone(), f64::INFINITY))
+        };
+        let (segments, costs): (Vec<Segment>, Vec<f64>) =
+            segments.par_iter().zip(linear.par_iter()).map(of).unzip();
+        (segments, costs.iter().sum())
+    }
+}
+
+fn finite(cost: f64) -> f64 {
+    if cost.is_nan() { f64::INFINITY } else { cost }
+}
