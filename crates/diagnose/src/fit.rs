@@ -53,6 +53,11 @@ impl EffectSet {
         set
     }
 
+    /// The set with every number held.
+    pub fn frozen(&self) -> Self {
+        Self { held: self.slots().into_iter().chain(self.held.iter().copied()).collect(), ..self.clone() }
+    }
+
     fn moved(&self, slots: &[(usize, usize)], by: &[f64]) -> Self {
         let mut set = self.clone();
         for ((m, k), d) in slots.iter().zip(by) {
@@ -118,7 +123,9 @@ pub struct Effort {
 
 impl Effort {
     /// For starts alone.
-    pub const STARTS: Self = Self { iterations: 6, share: 1e-4, reuse: false };
+    pub const STARTS: Self = Self { iterations: 6, share: 1e-3, reuse: false };
+    /// For starts that are only judged by.
+    pub const JUDGED: Self = Self { iterations: 5, share: 1e-2, reuse: false };
 }
 
 /// Promised fall of the cost below which a fit has converged whatever its size.

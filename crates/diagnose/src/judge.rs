@@ -47,12 +47,11 @@ pub fn judge(stage: &Stage<'_>, plant: &Plant, set: &EffectSet, window: f64) -> 
     let predict =
         |fit: Fit| Prediction { residuals: fit.segments.iter().map(|s| stage.residuals(&fit.built, s)).collect(), fit };
     let of = |set: &EffectSet| -> Result<(Prediction, Prediction), DiagnoseError> {
-        let frozen =
-            EffectSet { held: set.slots().into_iter().chain(set.held.iter().copied()).collect(), ..set.clone() };
+        let frozen = set.frozen();
         let built = plant.build(&frozen.effects())?;
         let segments = cut(&built, stage.tapes, Some(window), |_| true);
-        let windowed = fit(stage, plant, frozen.clone(), segments, Effort::STARTS)?;
-        let whole = fit(stage, plant, frozen, joined(&windowed, stage.tapes), Effort::STARTS)?;
+        let windowed = fit(stage, plant, frozen.clone(), segments, Effort::JUDGED)?;
+        let whole = fit(stage, plant, frozen, joined(&windowed, stage.tapes), Effort::JUDGED)?;
         Ok((predict(windowed), predict(whole)))
     };
     let nominal = of(&EffectSet::default())?;

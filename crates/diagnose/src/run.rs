@@ -19,7 +19,7 @@ use crate::locate::{Located, locate, places};
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::{Pace, Span};
-use crate::search::{Attempt, Limits, is_significant, search};
+use crate::search::{Attempt, Limits, Standing, is_significant, search};
 use crate::tape::Tape;
 use crate::tell;
 use crate::work::{Watch, Work};
@@ -63,34 +63,36 @@ pub fn diagnose(
     let (tapes, built) = load(&mut plant, set)?;
     let window = window_of(&set.rig, &tapes);
     let own = plant.scenario.integrator.step_s;
-    let stage = Stage { tapes: &tapes, pace: Pace { step: own, free: own }, work: &work };
+    let thinned: Vec<Tape> = tapes.iter().map(|t| t.thinned(ENOUGH)).collect();
+    let stage = Stage { tapes: &thinned, pace: Pace { step: own, free: own }, work: &work };
     clock.stage("choose the step", 0.03);
-    let segments = cut(&built, &tapes, Some(window), |t| t.role == Role::Fit);
+    let segments = cut(&built, &thinned, Some(window), |t| t.role == Role::Fit);
     let discretisation = pace::choose(&stage, &built, &segments, own);
     let Discretisation { pace, worst } = discretisation;
-    work.watch.step(&format!("steps of {:.3e} s, {:.3e} s in free flight: halving them moves {worst:.1e}", pace.step, pace.free));
+    watch.step(&format!("steps of {:.3e} s, {:.3e} s in free flight: halving moves {worst:.1e}", pace.step, pace.free));
     let stage = Stage { pace, ..stage };
     clock.stage("fit the starts of the nominal model", 0.05);
     let nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort::STARTS)?;
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
-    clock.stage("search in windows", 0.25);
+    clock.stage("search", 0.25);
+    let whole = fit(&stage, &plant, EffectSet::default(), joined(&nominal, &thinned), Effort::STARTS)?;
+    let standing = Standing { windows: representative(&stage, &nominal), whole };
     let candidates = |now: &Fit| promising(&located, hypotheses(&Facts::new(&now.built, &tapes)));
-    let some = representative(&stage, &nominal);
-    let (in_windows, mut attempts) = search(&stage, &plant, some, &candidates, &LIMITS)?;
-    clock.stage("search over whole runs", 0.6);
-    let whole = fit(&stage, &plant, in_windows.set.clone(), joined(&nominal, &tapes), Effort::STARTS)?;
-    let follows = whole.rms() < DIVERGED;
-    let (found, more) =
-        if follows { search(&stage, &plant, whole, &candidates, &LIMITS)? } else { (in_windows, Vec::new()) };
-    attempts.extend(more);
+    let (standing, attempts) = search(&stage, &plant, standing, &candidates, &LIMITS)?;
+    clock.stage("fit to all samples", 0.75);
+    let stage = Stage { tapes: &tapes, ..stage };
+    let follows = standing.follows();
+    let segments = if follows { standing.whole.segments } else { nominal.segments.clone() };
+    let segments = segments.into_iter().map(|s| Segment { columns: None, ..s }).collect();
+    let found = fit(&stage, &plant, standing.windows.set, segments, FINAL)?;
     clock.stage("predict every run", 0.85);
     let judgement = judge(&stage, &plant, &found.set, window)?;
     clock.stage("write", 1.0);
     let findings = Findings {
         title: set.title.clone(),
         window,
-        verdict: verdict(&nominal, &found),
+        verdict: verdict(&judgement, &found, follows),
         located,
         nominal,
         found,
@@ -102,8 +104,10 @@ pub fn diagnose(
     Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
 }
 
-/// Root mean square over whole runs beyond which they do not follow the model at all, and windows judge.
-const DIVERGED: f64 = 300.0;
+/// The last fit, of all samples.
+const FINAL: Effort = Effort { iterations: 8, share: 1e-6, reuse: false };
+/// Samples of a channel of a run that are enough to search by.
+const ENOUGH: usize = 3000;
 
 struct Clock<'a> {
     begun: Instant,
@@ -184,7 +188,8 @@ pub(crate) fn joined(fit: &Fit, tapes: &[Tape]) -> Vec<Segment> {
 
 /// Windows that speak for all in a search: those in which most is amiss, and an even selection.
 fn representative(stage: &Stage<'_>, fit: &Fit) -> Fit {
-    if fit.segments.len() <= 2 * SPOKESMEN {
+    let most = (fit.segments.len() / 6).clamp(*SPOKESMEN.start(), *SPOKESMEN.end());
+    if fit.segments.len() <= 2 * most {
         return fit.clone();
     }
     let excess = |s: &Segment| {
@@ -193,8 +198,8 @@ fn representative(stage: &Stage<'_>, fit: &Fit) -> Fit {
     };
     let mut order: Vec<(usize, f64)> = fit.segments.iter().map(excess).enumerate().collect();
     order.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut chosen: Vec<usize> = order.iter().take(SPOKESMEN).map(|o| o.0).collect();
-    chosen.extend((0..SPOKESMEN).map(|k| (2 * k + 1) * fit.segments.len() / (2 * SPOKESMEN)));
+    let mut chosen: Vec<usize> = order.iter().take(most).map(|o| o.0).collect();
+    chosen.extend((0..most).map(|k| (2 * k + 1) * fit.segments.len() / (2 * most)));
     chosen.sort_unstable();
     chosen.dedup();
     let segments: Vec<Segment> = chosen.iter().map(|i| fit.segments[*i].clone()).collect();
@@ -204,7 +209,7 @@ fn representative(stage: &Stage<'_>, fit: &Fit) -> Fit {
 }
 
 /// Windows of either kind.
-const SPOKESMEN: usize = 12;
+const SPOKESMEN: std::ops::RangeInclusive<usize> = 4..=12;
 
 /// Effects at joints where no force is missing are not looked at: an arm has many places.
 fn promising(located: &Located, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {
@@ -220,13 +225,14 @@ fn promising(located: &Located, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {
 /// Share of the best place's below which a joint is dull.
 const DULL: f64 = 0.15;
 
-fn verdict(nominal: &Fit, found: &Fit) -> Verdict {
+/// What is left over the runs that were fitted, against what there was.
+fn verdict(judgement: &Judgement, found: &Fit, follows: bool) -> Verdict {
     if !is_significant(found, &LIMITS) {
         return if found.set.members.is_empty() { Verdict::NoMismatch } else { Verdict::Explained };
     }
-    let left = found.excess() / found.count as f64;
-    let before = nominal.excess().max(found.excess()) / nominal.count as f64;
-    if !found.set.members.is_empty() && left < PARTLY * before && found.rms() < NEAR {
+    let [before, after] = judgement.rms(!follows, |run| found.segments.iter().any(|s| s.run == run));
+    let left = (after * after - 1.0) / (before * before - 1.0).max(1e-9);
+    if !found.set.members.is_empty() && left < PARTLY && found.rms() < NEAR {
         Verdict::PartlyExplained
     } else {
         Verdict::Unknown

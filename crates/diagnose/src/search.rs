@@ -1,8 +1,10 @@
 //! The search: from the nominal model forward, one effect at a time, and back.
 //!
-//! At one window length: screen all hypotheses beside the converged set; refit the most promising of them in full; keep the one with the lowest
-//! Bayesian information criterion (Schwarz 1978), cost + k ln N; then try to take out each member. It ends when the cost is what noise alone
-//! would leave, or nothing promising is left.
+//! A set of effects stands at two lengths: in some windows, which are convex enough to begin from, and over whole runs, which have the power
+//! and are what is judged. One round: screen all hypotheses beside the converged set, in the windows and, where the whole runs follow
+//! at all, over these; refit the most promising in the windows and take the best of them to the whole runs; keep the one with the lowest
+//! Bayesian information criterion (Schwarz 1978), cost + k ln N; then try to take out each member. It ends when the cost is what noise
+//! alone would leave, or nothing promising is left.
 
 use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
@@ -54,9 +56,6 @@ const WHOLE: Effort = Effort { iterations: 12, share: 1e-5, reuse: false };
 /// Promise relative to the best below which a hypothesis is not refitted.
 const PROMISING: f64 = 0.15;
 
-/// Promise relative to the best of a hypothesis that may rival one which explains everything.
-const RIVAL: f64 = 0.9;
-
 /// Schwarz's criterion.
 pub fn criterion(fit: &Fit) -> f64 {
     fit.cost + fit.set.slots().len() as f64 * (fit.count as f64).ln()
@@ -70,92 +69,202 @@ pub fn is_significant(fit: &Fit, limits: &Limits) -> bool {
     fit.excess() > (limits.sigmas * fit.spread()).max(LEAST * fit.count as f64)
 }
 
+/// A set of effects, fitted at both lengths.
+#[derive(Clone, Debug)]
+pub struct Standing {
+    /// In some windows.
+    pub windows: Fit,
+    /// Over whole runs.
+    pub whole: Fit,
+}
+
+impl Standing {
+    /// The fit that judges: whole runs where these follow, else the windows.
+    pub fn judge(&self) -> &Fit {
+        if self.follows() { &self.whole } else { &self.windows }
+    }
+
+    /// Whether whole runs follow the model far enough to be judged by.
+    pub fn follows(&self) -> bool {
+        self.whole.rms() < DIVERGED
+    }
+
+    /// The same with another set, its parameters fitted at the length that judges.
+    fn refit(&self, stage: &Stage<'_>, plant: &Plant, set: EffectSet, effort: Effort) -> Result<Self, DiagnoseError> {
+        let fixed = set.frozen();
+        if self.follows() {
+            let whole = fit(stage, plant, set, self.whole.segments.clone(), effort)?;
+            let windows = fit(stage, plant, whole.set.frozen(), self.windows.segments.clone(), Effort::STARTS)?;
+            let windows = Fit { set: whole.set.clone(), ..windows };
+            return Ok(Self { windows, whole });
+        }
+        let windows = fit(stage, plant, set.clone(), self.windows.segments.clone(), effort)?;
+        let now = if set.slots().is_empty() { fixed } else { windows.set.frozen() };
+        let whole = fit(stage, plant, now, self.whole.segments.clone(), Effort::STARTS)?;
+        let whole = Fit { set: windows.set.clone(), ..whole };
+        let standing = Self { windows, whole };
+        // They begin to follow: from now on they judge.
+        if standing.follows() { standing.refit(stage, plant, standing.windows.set.clone(), effort) } else { Ok(standing) }
+    }
+}
+
+/// Root mean square over whole runs beyond which they do not follow the model at all, and windows judge.
+const DIVERGED: f64 = 300.0;
+/// Root mean square over whole runs up to which a screen over them says something.
+const LINEAR: f64 = 60.0;
+/// Share of the remaining excess that an effect must take away.
+const WORTHWHILE: f64 = 0.03;
+/// Share of the best fall in the windows from which on a refit goes on to whole runs.
+const NEARLY: f64 = 0.6;
+
 /// Adds and removes effects until nothing significant is left or nothing helps.
 pub fn search(
     stage: &Stage<'_>,
     plant: &Plant,
-    mut now: Fit,
+    mut now: Standing,
     hypotheses: &dyn Fn(&Fit) -> Vec<Hypothesis>,
     limits: &Limits,
-) -> Result<(Fit, Vec<Attempt>), DiagnoseError> {
+) -> Result<(Standing, Vec<Attempt>), DiagnoseError> {
     let mut attempts = Vec::new();
     let mut round = 0;
-    while is_significant(&now, limits) && now.set.members.len() < limits.effects {
-        let is_active = |h: &Hypothesis| now.set.members.iter().any(|(m, _)| m.title() == h.title());
+    while is_significant(now.judge(), limits) && now.judge().set.members.len() < limits.effects {
+        let is_active = |h: &Hypothesis| now.judge().set.members.iter().any(|(m, _)| m.title() == h.title());
         let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) =
-            hypotheses(&now).into_iter().filter(|h| !is_active(h)).partition(|h| h.is_dear);
-        stage.work.watch.step(&format!("screen {} hypotheses beside error {:.3}", cheap.len() + dear.len(), now.rms()));
-        let scores = screen(stage, plant, &now, &cheap)?;
-        let (mut best, mut tried) = refit_best(stage, plant, &now, (&cheap, &scores), (limits, round))?;
+            hypotheses(now.judge()).into_iter().filter(|h| !is_active(h)).partition(|h| h.is_dear);
+        let mut best: Option<Standing> = None;
         // What is dear to screen is screened only where the rest leaves something.
-        if best.as_ref().is_none_or(|b| is_significant(b, limits)) {
-            let scores = screen(stage, plant, &now, &dear)?;
-            let (other, mut more) = refit_best(stage, plant, &now, (&dear, &scores), (limits, round))?;
-            tried.append(&mut more);
-            if other.as_ref().is_some_and(|o| best.as_ref().is_none_or(|b| criterion(o) < criterion(b))) {
+        for some in [cheap, dear] {
+            if best.as_ref().is_some_and(|b| !is_significant(b.judge(), limits)) {
+                break;
+            }
+            let (other, mut tried) = refit_best(stage, plant, &now, &some, (limits, round))?;
+            attempts.append(&mut tried);
+            if other.as_ref().is_some_and(|o| best.as_ref().is_none_or(|b| is_better(o, b))) {
                 best = other;
             }
         }
-        let Some(best) = best.filter(|b| criterion(b) < criterion(&now)) else {
-            attempts.append(&mut tried);
-            break;
+        let is_worthwhile = |b: &Standing| {
+            let (before, after) = (now.judge(), b.judge());
+            (b.follows() && !now.follows())
+                || (criterion(after) < criterion(before)
+                    && before.cost - after.cost > WORTHWHILE * before.excess().max(0.0))
         };
-        let added = best.set.members.last().map(|(h, _)| h.title()).unwrap_or_default();
-        tried.iter_mut().for_each(|t| t.kept = format!("{} at {}", t.name, t.place) == added);
-        attempts.append(&mut tried);
-        now = fit(stage, plant, best.set, best.segments, WHOLE)?;
-        stage.work.watch.step(&format!("kept {added}: error {:.3}", now.rms()));
+        let Some(best) = best.filter(is_worthwhile) else { break };
+        let added = best.judge().set.members.last().map(|(h, _)| h.title()).unwrap_or_default();
+        let of_round = attempts.iter_mut().filter(|t| t.round == round);
+        of_round.for_each(|t| t.kept = format!("{} at {}", t.name, t.place) == added);
+        let set = best.judge().set.clone();
+        now = best.refit(stage, plant, set, WHOLE)?;
+        stage.work.watch.step(&format!("kept {added}: {}", errors(&now)));
         now = prune(stage, plant, now)?;
         round += 1;
     }
     Ok((now, attempts))
 }
 
+/// Whether one standing is better than another: whole runs that follow, then the criterion.
+fn is_better(a: &Standing, b: &Standing) -> bool {
+    match (a.follows(), b.follows()) {
+        (true, false) => true,
+        (false, true) => false,
+        _ => criterion(a.judge()) < criterion(b.judge()),
+    }
+}
+
+fn errors(now: &Standing) -> String {
+    format!("error {:.3} in windows, {:.3} over whole runs", now.windows.rms(), now.whole.rms())
+}
+
 /// Refits the most promising hypotheses; the best of them, and what came of each.
 fn refit_best(
     stage: &Stage<'_>,
     plant: &Plant,
-    now: &Fit,
-    (all, scores): (&[Hypothesis], &[Score]),
+    now: &Standing,
+    all: &[Hypothesis],
     (limits, round): (&Limits, usize),
-) -> Result<(Option<Fit>, Vec<Attempt>), DiagnoseError> {
-    let interesting = scores_of_interest(all, scores);
-    let picked = pick(now, all, &interesting, limits.refits);
-    let mut best: Option<Fit> = None;
-    let mut attempts = Vec::new();
-    for score in interesting {
-        let h = &all[score.hypothesis];
-        let mut attempt = Attempt {
+) -> Result<(Option<Standing>, Vec<Attempt>), DiagnoseError> {
+    let mut attempts: Vec<Attempt> = Vec::new();
+    let mut ready: Vec<(usize, Fit, bool)> = Vec::new();
+    let levels = [(&now.windows, true, true), (&now.whole, false, now.whole.rms() < LINEAR)];
+    for (fit_here, is_window, _) in levels.into_iter().filter(|l| l.2) {
+        stage.work.watch.step(&format!("screen {} hypotheses beside error {:.3}", all.len(), fit_here.rms()));
+        let scores = screen(stage, plant, fit_here, all)?;
+        let interesting = scores_of_interest(all, &scores);
+        let picked = pick(fit_here, all, &interesting, limits.refits);
+        for score in interesting {
+            let h = &all[score.hypothesis];
+            let at = match attempts.iter().position(|a| a.name == h.name && a.place == h.place) {
+                Some(at) => at,
+                None => {
+                    attempts.push(Attempt::new(round, h, score, fit_here));
+                    attempts.len() - 1
+                }
+            };
+            if !picked.iter().any(|p| std::ptr::eq(*p, score)) {
+                continue;
+            }
+            let Some(start) = possible(stage, plant, fit_here, h, &score.start) else { continue };
+            let set = now.judge().set.with(h, &start);
+            let Ok(tried) = fit(stage, plant, set, fit_here.segments.clone(), LOOK) else { continue };
+            let said = format!("refit {}: error {:.3} → {:.3}", h.title(), fit_here.rms(), tried.rms());
+            stage.work.watch.step(&said);
+            attempts[at].tell(fit_here, &tried);
+            ready.push((at, tried, is_window));
+        }
+    }
+    let mut best: Option<Standing> = None;
+    let fall = |tried: &Fit, is_window: bool| {
+        let before = if is_window { &now.windows } else { &now.whole };
+        before.cost - tried.cost
+    };
+    let most = |windows: bool| ready.iter().filter(|r| r.2 == windows).map(|r| fall(&r.1, r.2)).fold(0.0, f64::max);
+    let most = [most(true), most(false)];
+    for (at, tried, is_window) in ready {
+        if fall(&tried, is_window) < NEARLY * most[usize::from(!is_window)] {
+            continue;
+        }
+        let standing = if is_window {
+            let whole = fit(stage, plant, tried.set.frozen(), now.whole.segments.clone(), Effort::STARTS)?;
+            let set = tried.set.clone();
+            let whole = Fit { set: set.clone(), ..whole };
+            let standing = Standing { windows: tried, whole };
+            if standing.follows() { standing.refit(stage, plant, set, LOOK)? } else { standing }
+        } else {
+            Standing { windows: now.windows.clone(), whole: tried }
+        };
+        let name = format!("{} at {}", attempts[at].name, attempts[at].place);
+        stage.work.watch.step(&format!("{name}: {}", errors(&standing)));
+        if standing.follows() && now.follows() {
+            attempts[at].tell(&now.whole, &standing.whole);
+        }
+        if best.as_ref().is_none_or(|b| is_better(&standing, b)) {
+            best = Some(standing);
+        }
+    }
+    Ok((best, attempts))
+}
+
+impl Attempt {
+    fn new(round: usize, h: &Hypothesis, score: &Score, beside: &Fit) -> Self {
+        Self {
             round,
             name: h.name.to_owned(),
             place: h.place.clone(),
             score: score.score,
-            share: score.score / now.excess().max(1.0),
+            share: score.score / beside.excess().max(1.0),
             fall: None,
             parameters: score.rank,
             gain: None,
             kept: false,
             found: score.start.clone(),
-        };
-        // Where all is explained only what promised nearly as much can be a rival.
-        let is_done = best.as_ref().is_some_and(|b| !is_significant(b, limits));
-        let hopeless = is_done && score.score < RIVAL * attempts.first().map_or(0.0, |a: &Attempt| a.score);
-        if !hopeless && picked.iter().any(|p| std::ptr::eq(*p, score)) {
-            let Some(start) = possible(stage, plant, now, h, &score.start) else { continue };
-            let Ok(tried) = fit(stage, plant, now.set.with(h, &start), now.segments.clone(), LOOK) else { continue };
-            let said = format!("refit {}: error {:.3} → {:.3}", h.title(), now.rms(), tried.rms());
-            stage.work.watch.step(&said);
-            attempt.fall = Some(now.cost - tried.cost);
-            attempt.gain = Some(criterion(now) - criterion(&tried));
-            attempt.found = tried.set.members.last().map(|m| m.1.clone()).unwrap_or_default();
-            attempt.parameters = tried.set.slots().len() - now.set.slots().len();
-            if best.as_ref().is_none_or(|b| criterion(&tried) < criterion(b)) {
-                best = Some(tried);
-            }
         }
-        attempts.push(attempt);
     }
-    Ok((best, attempts))
+
+    fn tell(&mut self, before: &Fit, after: &Fit) {
+        self.fall = Some(before.cost - after.cost);
+        self.gain = Some(criterion(before) - criterion(after));
+        self.found = after.set.members.last().map(|m| m.1.clone()).unwrap_or_default();
+    }
 }
 
 /// Coordinates to begin a refit with: those that were promised, or nearer to neutral where these cannot be built or the starts
@@ -197,7 +306,13 @@ fn pick<'s>(now: &Fit, all: &[Hypothesis], interesting: &[&'s Score], most: usiz
     let penalty = (now.count as f64).ln();
     let best = interesting.first().map_or(0.0, |s| s.score);
     let worth = |s: &&&Score| s.score > (PROMISING * best).max(penalty * s.rank as f64);
-    let mut picked: Vec<&Score> = interesting.iter().filter(worth).take(most).copied().collect();
+    let mut picked: Vec<&Score> = Vec::new();
+    for score in interesting.iter().filter(worth) {
+        let of_family = picked.iter().filter(|p| all[p.hypothesis].name == all[score.hypothesis].name).count();
+        if picked.len() < most && of_family == 0 {
+            picked.push(score);
+        }
+    }
     let plain = interesting.iter().filter(worth).find(|s| all[s.hypothesis].tier == Tier::Nominal);
     if let Some(plain) = plain
         && !picked.iter().any(|p| std::ptr::eq(*p, *plain))
@@ -208,13 +323,14 @@ fn pick<'s>(now: &Fit, all: &[Hypothesis], interesting: &[&'s Score], most: usiz
 }
 
 /// Takes out members whose loss the criterion welcomes.
-fn prune(stage: &Stage<'_>, plant: &Plant, mut now: Fit) -> Result<Fit, DiagnoseError> {
+fn prune(stage: &Stage<'_>, plant: &Plant, mut now: Standing) -> Result<Standing, DiagnoseError> {
     let mut member = 0;
-    while now.set.members.len() > 1 && member < now.set.members.len() {
-        let less: EffectSet = now.set.without(member);
-        let tried = fit(stage, plant, less, now.segments.clone(), LOOK)?;
-        if criterion(&tried) <= criterion(&now) {
-            now = fit(stage, plant, tried.set, tried.segments, WHOLE)?;
+    while now.judge().set.members.len() > 1 && member < now.judge().set.members.len() {
+        let less = now.judge().set.without(member);
+        let tried = now.refit(stage, plant, less, LOOK)?;
+        if tried.follows() == now.follows() && criterion(tried.judge()) <= criterion(now.judge()) {
+            let set = tried.judge().set.clone();
+            now = tried.refit(stage, plant, set, WHOLE)?;
             member = 0;
         } else {
             member += 1;

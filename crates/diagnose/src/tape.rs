@@ -87,10 +87,25 @@ impl Tape {
             readings.extend(readings_of(set, prefix, quantity, group));
         }
         let index = set.runs.iter().position(|r| r.file == run.file && r.note == run.note).unwrap_or(0);
-        Ok(Self { index, ..Self::assemble(run, commands, readings) })
+        Ok(Self { index, ..Self::assemble((&run.file, run.role), commands, readings) })
     }
 
-    fn assemble(run: &RecordedRun, commands: Vec<CommandTape>, readings: Vec<Reading>) -> Self {
+    /// The same run with at most so many samples of each reading, evenly picked: enough to search by.
+    pub fn thinned(&self, most: usize) -> Self {
+        let thin = |r: &Reading| {
+            let every = r.times.len().div_ceil(most).max(1);
+            Reading {
+                times: r.times.iter().step_by(every).copied().collect(),
+                values: r.values.iter().step_by(every).copied().collect(),
+                ..r.clone()
+            }
+        };
+        let readings = self.readings.iter().map(thin).collect();
+        let thinned = Self::assemble((&self.file, self.role), self.commands.clone(), readings);
+        Self { index: self.index, ..thinned }
+    }
+
+    fn assemble((file, role): (&str, Role), commands: Vec<CommandTape>, readings: Vec<Reading>) -> Self {
         let mut events: Vec<Event> = Vec::new();
         for (r, reading) in readings.iter().enumerate() {
             let samples = reading.times.iter().enumerate();
@@ -105,7 +120,7 @@ impl Tape {
         for event in &events {
             offsets.push(offsets[offsets.len() - 1] + readings[event.reading as usize].width());
         }
-        Self { index: 0, file: run.file.clone(), role: run.role, commands, readings, events, offsets, ticks, span }
+        Self { index: 0, file: file.to_owned(), role, commands, readings, events, offsets, ticks, span }
     }
 
     /// The events of a span: those at its end belong to the next, but for the run's last.

@@ -95,8 +95,8 @@ const DAMPING_TIME: f64 = 2e-3;
 /// v_d: rate beyond which that damping fades, rad/s or m/s.
 const DAMPING_RATE: f64 = 0.02;
 
-/// Rate below which a reversal may be near, rad/s or m/s: the damping of small motion has faded to e⁻²⁵ there.
-const NEAR_REVERSAL: f64 = 5.0 * DAMPING_RATE;
+/// Rate below which a reversal may be near, rad/s or m/s: the damping of small motion has faded to e⁻⁹ there.
+const NEAR_REVERSAL: f64 = 3.0 * DAMPING_RATE;
 /// Longest step of Runge–Kutta near a reversal, s. Measured on a seven-joint arm that rests and starts again under noisy
 /// commands, 12 s: 0.2 ms stays within a tenth of an encoder's noise, 0.5 ms does not.
 pub(super) const REVERSAL_STEP: f64 = 2e-4;
