@@ -263,6 +263,17 @@ impl Hypothesis {
         Some(self.clamped(&x))
     }
 
+    /// The law with one number that this one becomes where its other numbers do nothing, and that number.
+    pub fn plainer(&self, x: &[f64]) -> Option<(&'static str, f64)> {
+        match self.name {
+            "joint-stribeck-friction" => Some(("joint-coulomb-friction", x[0])),
+            "joint-friction-asymmetry" => Some(("joint-coulomb-friction", 0.5 * (x[0] + x[1]))),
+            "friction-stribeck" => Some(("friction-coefficient", x[1])),
+            "friction-anisotropy" => Some(("friction-coefficient", x[0])),
+            _ => None,
+        }
+    }
+
     /// Standard errors of the parameters from the covariance of the coordinates, by difference quotients of [`Self::decode`].
     pub fn errors(&self, x: &[f64], covariance: &nalgebra::DMatrix<f64>) -> Vec<(&'static str, f64)> {
         let at = self.decode(x);

@@ -28,6 +28,8 @@ pub struct Segment {
     pub span: Span,
     /// Its start.
     pub start: Start,
+    /// What the samples around it say of the start, whatever the model.
+    pub guess: Arc<Start>,
     /// Derivatives by the start, as last computed: they change little from one fit to the next.
     pub columns: Option<Arc<StartColumns>>,
 }

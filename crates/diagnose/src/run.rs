@@ -19,12 +19,13 @@ use crate::locate::{Located, locate, places};
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::{Pace, Span};
-use crate::search::{Attempt, Limits, Standing, is_significant, search};
+use crate::search::{Attempt, Limits, Standing, follow, is_significant, search};
 use crate::tape::Tape;
 use crate::tell;
 use crate::work::{Watch, Work};
 use record::{RecordingSet, Role, Severity};
 use scenario::Scenario;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// What the search left to judge and to tell.
@@ -76,9 +77,13 @@ pub fn diagnose(
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
     clock.stage("search", 0.25);
-    let whole = fit(&stage, &plant, EffectSet::default(), joined(&nominal, &thinned), Effort::STARTS)?;
+    let whole = follow(&stage, &plant, EffectSet::default(), &joined(&nominal, &thinned))?;
     let standing = Standing { windows: representative(&stage, &nominal), whole };
-    let candidates = |now: &Fit| promising(&located, hypotheses(&Facts::new(&now.built, &tapes)));
+    let candidates = |now: &Fit| {
+        let facts = Facts::new(&now.built, &tapes);
+        let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
+        Ok(promising(&locate(&stage, &plant, now, joints)?, hypotheses(&facts)))
+    };
     let (standing, attempts) = search(&stage, &plant, standing, &candidates, &LIMITS)?;
     clock.stage("fit to all samples", 0.75);
     let stage = Stage { tapes: &tapes, ..stage };
@@ -175,7 +180,11 @@ fn window_of(rig: &str, tapes: &[Tape]) -> f64 {
 pub(crate) fn cut(built: &Built, tapes: &[Tape], window: Option<f64>, wanted: impl Fn(&Tape) -> bool) -> Vec<Segment> {
     let runs = (0..tapes.len()).filter(|r| wanted(&tapes[*r]));
     let spans = runs.flat_map(|run| windows(&tapes[run], window).into_iter().map(move |span| (run, span)));
-    spans.map(|(run, span)| Segment { run, span, start: guess(built, &tapes[run], span.from), columns: None }).collect()
+    let segment = |(run, span): (usize, Span)| {
+        let start = guess(built, &tapes[run], span.from);
+        Segment { run, span, guess: Arc::new(start.clone()), start, columns: None }
+    };
+    spans.map(segment).collect()
 }
 
 /// Whole runs, from the starts of their first windows.

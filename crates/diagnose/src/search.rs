@@ -9,7 +9,7 @@
 use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::{Hypothesis, Tier};
-use crate::linear::Stage;
+use crate::linear::{Segment, Stage};
 use crate::plant::Plant;
 use crate::screen::{Score, screen};
 
@@ -100,7 +100,7 @@ impl Standing {
         }
         let windows = fit(stage, plant, set.clone(), self.windows.segments.clone(), effort)?;
         let now = if set.slots().is_empty() { fixed } else { windows.set.frozen() };
-        let whole = fit(stage, plant, now, self.whole.segments.clone(), Effort::STARTS)?;
+        let whole = follow(stage, plant, now, &self.whole.segments)?;
         let whole = Fit { set: windows.set.clone(), ..whole };
         let standing = Self { windows, whole };
         // They begin to follow: from now on they judge.
@@ -108,12 +108,28 @@ impl Standing {
     }
 }
 
+/// Whole runs with their starts fitted, where these are near enough for that.
+pub fn follow(stage: &Stage<'_>, plant: &Plant, set: EffectSet, segments: &[Segment]) -> Result<Fit, DiagnoseError> {
+    let none = Effort { iterations: 0, ..Effort::STARTS };
+    let first = fit(stage, plant, set, segments.to_vec(), none)?;
+    if first.rms() > HOPELESS {
+        return Ok(Fit { segments: segments.to_vec(), ..first });
+    }
+    fit(stage, plant, first.set, first.segments, Effort::STARTS)
+}
+
+/// Root mean square over whole runs from the starts of windows beyond which no start makes them follow.
+const HOPELESS: f64 = 3000.0;
 /// Root mean square over whole runs beyond which they do not follow the model at all, and windows judge.
 const DIVERGED: f64 = 300.0;
 /// Root mean square over whole runs up to which a screen over them says something.
 const LINEAR: f64 = 60.0;
 /// Share of the remaining excess that an effect must take away.
 const WORTHWHILE: f64 = 0.03;
+/// Promise relative to what another refit has brought below which none is made.
+const RIVAL: f64 = 0.9;
+/// Share of the excess that the plainer hypotheses must leave for those that are dear to screen.
+const UNEXPLAINED: f64 = 0.05;
 /// Share of the best fall in the windows from which on a refit goes on to whole runs.
 const NEARLY: f64 = 0.6;
 
@@ -122,19 +138,24 @@ pub fn search(
     stage: &Stage<'_>,
     plant: &Plant,
     mut now: Standing,
-    hypotheses: &dyn Fn(&Fit) -> Vec<Hypothesis>,
+    hypotheses: &dyn Fn(&Fit) -> Result<Vec<Hypothesis>, DiagnoseError>,
     limits: &Limits,
 ) -> Result<(Standing, Vec<Attempt>), DiagnoseError> {
     let mut attempts = Vec::new();
     let mut round = 0;
     while is_significant(now.judge(), limits) && now.judge().set.members.len() < limits.effects {
         let is_active = |h: &Hypothesis| now.judge().set.members.iter().any(|(m, _)| m.title() == h.title());
+        let all = hypotheses(&now.windows)?;
         let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) =
-            hypotheses(now.judge()).into_iter().filter(|h| !is_active(h)).partition(|h| h.is_dear);
+            all.iter().cloned().filter(|h| !is_active(h)).partition(|h| h.is_dear);
         let mut best: Option<Standing> = None;
         // What is dear to screen is screened only where the rest leaves something.
         for some in [cheap, dear] {
-            if best.as_ref().is_some_and(|b| !is_significant(b.judge(), limits)) {
+            let is_enough = |b: &Standing| {
+                !is_significant(b.judge(), limits)
+                    || b.follows() == now.follows() && b.judge().excess() < UNEXPLAINED * now.judge().excess()
+            };
+            if best.as_ref().is_some_and(is_enough) {
                 break;
             }
             let (other, mut tried) = refit_best(stage, plant, &now, &some, (limits, round))?;
@@ -157,6 +178,7 @@ pub fn search(
         now = best.refit(stage, plant, set, WHOLE)?;
         stage.work.watch.step(&format!("kept {added}: {}", errors(&now)));
         now = prune(stage, plant, now)?;
+        now = simplify(stage, plant, now, &all)?;
         round += 1;
     }
     Ok((now, attempts))
@@ -203,6 +225,11 @@ fn refit_best(
             if !picked.iter().any(|p| std::ptr::eq(*p, score)) {
                 continue;
             }
+            // A promise is seldom exceeded: what promises less than another has brought already is left alone.
+            let brought = ready.iter().filter(|r| r.2 == is_window).map(|r| fit_here.cost - r.1.cost).fold(0.0, f64::max);
+            if score.score < RIVAL * brought {
+                continue;
+            }
             let Some(start) = possible(stage, plant, fit_here, h, &score.start) else { continue };
             let set = now.judge().set.with(h, &start);
             let Ok(tried) = fit(stage, plant, set, fit_here.segments.clone(), LOOK) else { continue };
@@ -224,7 +251,7 @@ fn refit_best(
             continue;
         }
         let standing = if is_window {
-            let whole = fit(stage, plant, tried.set.frozen(), now.whole.segments.clone(), Effort::STARTS)?;
+            let whole = follow(stage, plant, tried.set.frozen(), &now.whole.segments)?;
             let set = tried.set.clone();
             let whole = Fit { set: set.clone(), ..whole };
             let standing = Standing { windows: tried, whole };
@@ -334,6 +361,28 @@ fn prune(stage: &Stage<'_>, plant: &Plant, mut now: Standing) -> Result<Standing
             member = 0;
         } else {
             member += 1;
+        }
+    }
+    Ok(now)
+}
+
+/// Puts a plainer law in the place of one that has grown into it.
+fn simplify(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    mut now: Standing,
+    all: &[Hypothesis],
+) -> Result<Standing, DiagnoseError> {
+    for member in 0..now.judge().set.members.len() {
+        let set = &now.judge().set;
+        let (h, x) = &set.members[member];
+        let Some((name, value)) = h.plainer(x) else { continue };
+        let Some(plain) = all.iter().find(|p| p.name == name && p.place == h.place) else { continue };
+        let tried = now.refit(stage, plant, set.without(member).with(plain, &[value]), LOOK)?;
+        if tried.follows() == now.follows() && criterion(tried.judge()) <= criterion(now.judge()) {
+            stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
+            let set = tried.judge().set.clone();
+            now = tried.refit(stage, plant, set, WHOLE)?;
         }
     }
     Ok(now)

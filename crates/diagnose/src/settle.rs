@@ -6,7 +6,7 @@
 
 use crate::linear::{Segment, SegmentLinear, Stage, StartColumns, eliminate};
 use crate::plant::Built;
-use crate::start::freedoms;
+use crate::start::{Start, freedoms};
 use nalgebra::DVector;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -50,15 +50,13 @@ impl Stage<'_> {
         sizes: &[f64],
         (iterations, share): (usize, f64),
     ) -> (Settled, Vec<f64>) {
-        let start = segment.start.fitted_to(built);
-        let all = freedoms(built, &start);
+        let (mut segment, mut r) = self.nearer(built, segment);
+        let all = freedoms(built, &segment.start);
         let mut sizes: Vec<f64> = if sizes.len() == all.len() {
             sizes.to_vec()
         } else {
             all.iter().map(|f| f.first_step()).collect()
         };
-        let mut segment = Segment { start, ..segment.clone() };
-        let mut r = self.residuals(built, &segment);
         let mut now = (finite(r.norm_squared()), 0, 0, false);
         let mut damping = 0.0;
         while now.2 < iterations && !now.3 {
@@ -108,11 +106,22 @@ impl Stage<'_> {
         None
     }
 
+    /// A segment from its last start or from what its samples say, whichever is nearer: a start that was fitted to a wrong model is
+    /// wrong with it.
+    fn nearer(&self, built: &Built, segment: &Segment) -> (Segment, DVector<f64>) {
+        let from = |start: &Start| {
+            let moved = Segment { start: start.fitted_to(built), ..segment.clone() };
+            let r = self.residuals(built, &moved);
+            (moved, r)
+        };
+        let (old, new) = (from(&segment.start), from(&segment.guess));
+        if finite(new.1.norm_squared()) < finite(old.1.norm_squared()) { new } else { old }
+    }
+
     /// Segments whose starts have followed a changed model as far as their old columns tell, and their cost.
     pub fn settle(&self, built: &Built, segments: &[Segment]) -> (Vec<Segment>, f64) {
         let of = |segment: &Segment| {
-            let mut now = Segment { start: segment.start.fitted_to(built), ..segment.clone() };
-            let mut r = self.residuals(built, &now);
+            let (mut now, mut r) = self.nearer(built, segment);
             let mut cost = finite(r.norm_squared());
             let Some(known) = &segment.columns else { return (now, cost) };
             for _ in 0..SETTLINGS {

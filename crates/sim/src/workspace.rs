@@ -60,6 +60,8 @@ pub(crate) struct Workspace {
     pub parts: crate::effect::Parts,
     pub rk: crate::rk4::Stages,
     pub backup: State,
+    /// The state before a part of a step that may have to be made again.
+    pub before: State,
 }
 
 impl Workspace {
@@ -107,6 +109,7 @@ impl Workspace {
             parts: crate::effect::Parts::new(model),
             rk: crate::rk4::Stages::new(model),
             backup: State::new(model),
+            before: State::new(model),
         }
     }
 

@@ -136,7 +136,7 @@ impl World {
     /// Advances by one step of `h` s; nothing happens unless `h` is above zero.
     ///
     /// Where a delayed command begins to act on the way, the step is made in two; see [`World::next_switch`]. Where dry
-    /// joint friction may reverse, Runge–Kutta makes it in parts of 0.2 ms at most.
+    /// joint friction has reversed in it, Runge–Kutta makes it again in parts of 0.2 ms, or of a fifth where that is longer.
     pub fn advance_by(&mut self, h: f64) -> Result<(), StepError> {
         if h.is_nan() || h <= 0.0 {
             return Ok(());
@@ -147,15 +147,28 @@ impl World {
         let is_regular = h == step && start == self.state.steps as f64 * step;
         let end = if is_regular { (self.state.steps + 1) as f64 * step } else { start + h };
         let mut left = h;
+        // What is left of a stretch in which dry friction turns, and is made in short steps.
+        let mut turning = 0.0;
+        let may_turn = effect::may_turn(&self.model);
         loop {
             effect::accept(&self.model, &mut self.state);
             self.settle_effects();
-            let part = self.calc_part(left);
+            let part = self.calc_part(left, turning, h);
             let is_last = part >= left;
             self.ws.step = part;
             self.ws.end = if is_last { end } else { self.state.time + part };
+            if may_turn {
+                self.ws.before.copy_from(&self.state);
+            }
             self.make_step()?;
-            left -= part;
+            if turning <= 0.0 && may_turn && effect::has_turned(&self.model, &self.ws.before, &self.state) {
+                self.state.copy_from(&self.ws.before);
+                self.is_fresh = false;
+                self.refresh();
+                turning = part;
+                continue;
+            }
+            (left, turning) = (left - part, turning - part);
             if is_last {
                 self.state.steps += 1;
                 return Ok(());
@@ -194,12 +207,16 @@ impl World {
         self.refresh();
     }
 
-    /// The share of what is left of a step that is made in one: up to the next switch, and as long as the effects bear.
-    fn calc_part(&self, left: f64) -> f64 {
+    /// The share of what is left of a step that is made in one: up to the next switch, and shorter while friction turns.
+    fn calc_part(&self, left: f64, turning: f64, h: f64) -> f64 {
         let to_switch = effect::next_switch(&self.state).map_or(left, |t| (t - self.state.time).min(left));
-        let longest = effect::calc_longest_step(&self.model, &self.state);
+        if turning <= 0.0 {
+            return to_switch;
+        }
+        let (part, longest) = (to_switch.min(turning), effect::longest_turn(h));
         // The last part may be a rounding error longer.
-        if to_switch <= longest * (1.0 + 1e-9) { to_switch } else { to_switch / (to_switch / longest - 1e-9).ceil() }
+        let part = if part <= longest * (1.0 + 1e-9) { part } else { part / (part / longest - 1e-9).ceil() };
+        if left - part < 1e-9 * h { left } else { part }
     }
 
     /// When the next command that an effect delays begins to act, s; none where none is on its way.

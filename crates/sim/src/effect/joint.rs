@@ -14,7 +14,7 @@
 //! The deflection of every stage is therefore taken from the displacement since the step's start, exactly; a reversal
 //! within the step is placed by a linear rate between its ends. Integrated as a rate, z would be stiff (|q̇|/z₀ is
 //! 3,000 /s at 1 rad/s); so it is bounded at any step, and the law is as smooth in q as the motion lets it be. What is
-//! left is the corner at a reversal: near it Runge–Kutta's steps are divided, see [`REVERSAL_STEP`].
+//! left is the corner at a reversal: a step of Runge–Kutta that holds one is divided, see [`REVERSAL_STEP`].
 
 use crate::actuator::CoordinatePoint;
 use std::f64::consts::TAU;
@@ -95,11 +95,15 @@ const DAMPING_TIME: f64 = 2e-3;
 /// v_d: rate beyond which that damping fades, rad/s or m/s.
 const DAMPING_RATE: f64 = 0.02;
 
-/// Rate below which a reversal may be near, rad/s or m/s: the damping of small motion has faded to e⁻⁹ there.
-const NEAR_REVERSAL: f64 = 3.0 * DAMPING_RATE;
-/// Longest step of Runge–Kutta near a reversal, s. Measured on a seven-joint arm that rests and starts again under noisy
-/// commands, 12 s: 0.2 ms stays within a tenth of an encoder's noise, 0.5 ms does not.
-pub(super) const REVERSAL_STEP: f64 = 2e-4;
+/// Longest step of Runge–Kutta in which dry friction turns, s, and as a share of the step where that is longer. Measured on a
+/// seven-joint arm that rests and starts again under noisy commands, 12 s: 0.2 ms stays within a tenth of an encoder's noise.
+const REVERSAL_STEP: f64 = 2e-4;
+const REVERSAL_SHARE: f64 = 0.2;
+
+/// Longest part, s, of a step of `h` that holds a reversal.
+pub(super) fn reversal_step(h: f64) -> f64 {
+    REVERSAL_STEP.max(REVERSAL_SHARE * h)
+}
 
 impl DryLevel {
     fn is_nothing(&self) -> bool {
@@ -182,9 +186,9 @@ impl JointEffect {
         }
     }
 
-    /// Whether dry friction is about to turn at the rate `v`.
-    pub(super) fn is_near_reversal(&self, v: f64) -> bool {
-        matches!(self.law, JointLaw::Dry(level) if v.abs() < NEAR_REVERSAL && !level.is_nothing())
+    /// Whether it is dry friction.
+    pub(super) fn is_dry(&self) -> bool {
+        matches!(self.law, JointLaw::Dry(level) if !level.is_nothing())
     }
 
     /// Takes the deflection over the accepted step.

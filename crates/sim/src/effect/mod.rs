@@ -245,15 +245,24 @@ pub(crate) fn commit(model: &Model, state: &mut State, ws: &Workspace) {
     }
 }
 
-/// Longest step that the effects bear at the present rates, s: an explicit step that passes a reversal of dry friction
-/// in one stride makes of its corner what it likes.
-pub(crate) fn calc_longest_step(model: &Model, state: &State) -> f64 {
-    let is_slow = |effect: &Effect| match &effect.kind {
-        EffectKind::Joint(joint) => joint.is_near_reversal(state.v[joint.coordinate]),
+/// Whether dry friction could turn within a step, and the integrator would feel its corner.
+pub(crate) fn may_turn(model: &Model) -> bool {
+    let is_dry = |effect: &Effect| matches!(&effect.kind, EffectKind::Joint(joint) if joint.is_dry());
+    model.integrator == Integrator::RungeKutta4 && model.effects.list.iter().any(is_dry)
+}
+
+/// Whether dry friction has turned between two states.
+pub(crate) fn has_turned(model: &Model, before: &State, after: &State) -> bool {
+    let has = |effect: &Effect| match &effect.kind {
+        EffectKind::Joint(joint) if joint.is_dry() => before.v[joint.coordinate] * after.v[joint.coordinate] <= 0.0,
         _ => false,
     };
-    let is_fine = model.integrator == Integrator::RungeKutta4 && model.effects.list.iter().any(is_slow);
-    if is_fine { joint::REVERSAL_STEP } else { f64::INFINITY }
+    model.effects.list.iter().any(has)
+}
+
+/// Longest step of `h` in which dry friction may turn, s.
+pub(crate) fn longest_turn(h: f64) -> f64 {
+    joint::reversal_step(h)
 }
 
 /// Puts the memory that a start at rest decides to that rest: gears carry what holds their joints still, lags have passed.
