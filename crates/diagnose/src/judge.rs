@@ -1,10 +1,11 @@
 //! Prediction errors: every run, free and in windows, under the nominal and the corrected model, each with its own starts.
 
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Effort, Fit, fit};
-use crate::linear::Stage;
+use crate::fit::{Effort, Fit, fit};
+use crate::linear::{Segment, Stage};
 use crate::plant::Plant;
 use crate::run::{cut, joined};
+use crate::search::follow_with;
 use crate::tape::Tape;
 use nalgebra::DVector;
 use record::Role;
@@ -42,21 +43,48 @@ pub struct Scalar {
     pub residual: f64,
 }
 
-/// Estimates the starts of every run under both models.
-pub fn judge(stage: &Stage<'_>, plant: &Plant, set: &EffectSet, window: f64) -> Result<Judgement, DiagnoseError> {
+/// Estimates the starts of every run under both models, from those that the search has found.
+pub fn judge(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    (nominal, found): (&Fit, &Fit),
+    window: f64,
+) -> Result<Judgement, DiagnoseError> {
     let predict =
         |fit: Fit| Prediction { residuals: fit.segments.iter().map(|s| stage.residuals(&fit.built, s)).collect(), fit };
-    let of = |set: &EffectSet| -> Result<(Prediction, Prediction), DiagnoseError> {
-        let frozen = set.frozen();
-        let built = plant.build(&frozen.effects())?;
-        let segments = cut(&built, stage.tapes, Some(window), |_| true);
-        let windowed = fit(stage, plant, frozen.clone(), segments, Effort::JUDGED)?;
-        let whole = fit(stage, plant, frozen, joined(&windowed, stage.tapes), Effort::JUDGED)?;
+    let of = |known: &Fit| -> Result<(Prediction, Prediction), DiagnoseError> {
+        let set = known.set.frozen();
+        let built = plant.build(&set.effects())?;
+        let mut windows = cut(&built, stage.tapes, Some(window), |_| true);
+        begin_from(&mut windows, &known.segments);
+        let first = |windows: &[Segment]| joined(windows, stage.tapes);
+        let mut runs = first(&windows);
+        begin_from(&mut runs, &known.segments);
+        let whole = follow_with(stage, plant, set.clone(), &runs, Effort::JUDGED)?;
+        if whole.rms() < NEAR {
+            stage.along(&built, &whole.segments, &mut windows);
+        }
+        let windowed = fit(stage, plant, set.clone(), windows, Effort::JUDGED)?;
+        let far = whole.rms() >= NEAR;
+        let whole = if far { follow_with(stage, plant, set, &first(&windowed.segments), Effort::JUDGED)? } else { whole };
         Ok((predict(windowed), predict(whole)))
     };
-    let nominal = of(&EffectSet::default())?;
-    let corrected = if set.members.is_empty() { nominal.clone() } else { of(set)? };
-    Ok(Judgement { windowed: [nominal.0, corrected.0], whole: [nominal.1, corrected.1] })
+    let before = of(nominal)?;
+    let after = if found.set.members.is_empty() { before.clone() } else { of(found)? };
+    Ok(Judgement { windowed: [before.0, after.0], whole: [before.1, after.1] })
+}
+
+/// Root mean square over whole runs up to which windows begin where the whole run is.
+const NEAR: f64 = 3.0;
+
+/// Takes the starts of segments that are known already.
+fn begin_from(segments: &mut [Segment], known: &[Segment]) {
+    for segment in segments {
+        let same = |k: &&Segment| k.run == segment.run && (k.span.from - segment.span.from).abs() < 1e-9;
+        if let Some(known) = known.iter().find(same) {
+            segment.start.clone_from(&known.start);
+        }
+    }
 }
 
 impl Prediction {

@@ -30,6 +30,8 @@ pub struct Segment {
     pub start: Start,
     /// What the samples around it say of the start, whatever the model.
     pub guess: Arc<Start>,
+    /// Weight of its residuals; below one where a window is far from followed and shall not outvote the others.
+    pub weight: f64,
     /// Derivatives by the start, as last computed: they change little from one fit to the next.
     pub columns: Option<Arc<StartColumns>>,
 }
@@ -107,7 +109,8 @@ impl Stage<'_> {
         let tape = &self.tapes[segment.run];
         self.work.add(segment.span.to - segment.span.from);
         match residuals(built, tape, start, segment.span, self.pace) {
-            Ok(r) => DVector::from_vec(r),
+            Ok(r) if segment.weight == 1.0 => DVector::from_vec(r),
+            Ok(r) => DVector::from_vec(r) * segment.weight.sqrt(),
             Err(_) => DVector::from_element(self.count(segment), f64::INFINITY),
         }
     }

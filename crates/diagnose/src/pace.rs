@@ -27,7 +27,7 @@ pub struct Discretisation {
     pub worst: f64,
 }
 
-/// The coarsest steps whose halves tell the same; `own` is the scenario's step, s.
+/// The coarsest steps whose halves tell the same; `own` is the step below which half and quarter are the last that are tried, s.
 pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> Discretisation {
     let every = segments.len().div_ceil(WINDOWS).max(1);
     let some: Vec<&Segment> = segments.iter().skip(every / 2).step_by(every).collect();

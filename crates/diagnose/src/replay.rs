@@ -58,25 +58,62 @@ pub fn observe(
         return Err(DiagnoseError::Replay { file: tape.file.clone(), what });
     }
     let events = events_in(tape, span, &sensors);
-    let mut world = start.world(built, tape.index);
-    let mut feed = Feed::new(tape, span.from);
-    hear_the_past(built, tape, span.from, &mut world);
-    feed.apply(&mut world);
-    start.set_memory(&mut world);
+    let mut replay = Replay::new(built, tape, start, span.from, pace);
     for (i, event) in &events {
-        while feed.next_tick(tape) < event.time - SAME {
-            advance_to(&mut world, feed.next_tick(tape), pace).map_err(|what| gone(tape, what))?;
-            feed.turn(tape, world.state().time);
-            feed.apply(&mut world);
-        }
-        advance_to(&mut world, event.time, pace).map_err(|what| gone(tape, what))?;
+        replay.advance_to(event.time)?;
         let (gauge, sensor) = &sensors[event.reading as usize];
         if gauge.reads_contact() {
-            world.refresh_touches();
+            replay.world.refresh_touches();
         }
-        look(*i, event, &Value::from(sensor.apply(&gauge.read(&world))));
+        look(*i, event, &Value::from(sensor.apply(&gauge.read(&replay.world))));
     }
     Ok(())
+}
+
+/// Starts at some ascending instants of a replay, for windows that begin there.
+pub fn starts_along(
+    built: &Built,
+    tape: &Tape,
+    start: &Start,
+    pace: Pace,
+    instants: &[f64],
+) -> Result<Vec<Start>, DiagnoseError> {
+    let mut replay = Replay::new(built, tape, start, start.time, pace);
+    let at = |instant: &f64| {
+        replay.advance_to(*instant)?;
+        Ok(if *instant <= start.time { start.clone() } else { Start::of(built, tape.index, &replay.world) })
+    };
+    instants.iter().map(at).collect()
+}
+
+/// A world that runs through a tape.
+struct Replay<'a> {
+    tape: &'a Tape,
+    world: World,
+    feed: Feed<'a>,
+    pace: Pace,
+}
+
+impl<'a> Replay<'a> {
+    fn new(built: &Built, tape: &'a Tape, start: &Start, from: f64, pace: Pace) -> Self {
+        let mut world = start.world(built, tape.index);
+        let feed = Feed::new(tape, from);
+        hear_the_past(built, tape, from, &mut world);
+        feed.apply(&mut world);
+        start.set_memory(&mut world);
+        Self { tape, world, feed, pace }
+    }
+
+    /// Advances to an instant, commands changed at their ticks.
+    fn advance_to(&mut self, time: f64) -> Result<(), DiagnoseError> {
+        let Self { tape, world, feed, pace } = self;
+        while feed.next_tick(tape) < time - SAME {
+            advance_to(world, feed.next_tick(tape), *pace).map_err(|what| gone(tape, what))?;
+            feed.turn(tape, world.state().time);
+            feed.apply(world);
+        }
+        advance_to(world, time, *pace).map_err(|what| gone(tape, what))
+    }
 }
 
 /// Late actuators still follow commands from before the span.

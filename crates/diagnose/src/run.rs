@@ -71,20 +71,20 @@ pub fn diagnose(
     let discretisation = pace::choose(&stage, &built, &segments, own);
     let Discretisation { pace, worst } = discretisation;
     watch.step(&format!("steps of {:.3e} s, {:.3e} s in free flight: halving moves {worst:.1e}", pace.step, pace.free));
-    let stage = Stage { pace, ..stage };
+    let mut stage = Stage { pace, ..stage };
     clock.stage("fit the starts of the nominal model", 0.05);
     let nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort::STARTS)?;
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
     clock.stage("search", 0.25);
-    let whole = follow(&stage, &plant, EffectSet::default(), &joined(&nominal, &thinned))?;
-    let standing = Standing { windows: representative(&stage, &nominal), whole };
-    let candidates = |now: &Fit| {
+    let whole = follow(&stage, &plant, EffectSet::default(), &joined(&nominal.segments, &thinned))?;
+    let standing = Standing::new(&stage, representative(&stage, &nominal), whole)?;
+    let candidates = |stage: &Stage<'_>, now: &Fit| {
         let facts = Facts::new(&now.built, &tapes);
         let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
-        Ok(promising(&locate(&stage, &plant, now, joints)?, hypotheses(&facts)))
+        Ok(promising(&locate(stage, &plant, now, joints)?, hypotheses(&facts)))
     };
-    let (standing, attempts) = search(&stage, &plant, standing, &candidates, &LIMITS)?;
+    let (standing, attempts) = search(&mut stage, &plant, standing, &candidates, &LIMITS)?;
     clock.stage("fit to all samples", 0.75);
     let stage = Stage { tapes: &tapes, ..stage };
     let follows = standing.follows();
@@ -92,7 +92,7 @@ pub fn diagnose(
     let segments = segments.into_iter().map(|s| Segment { columns: None, ..s }).collect();
     let found = fit(&stage, &plant, standing.windows.set, segments, FINAL)?;
     clock.stage("predict every run", 0.85);
-    let judgement = judge(&stage, &plant, &found.set, window)?;
+    let judgement = judge(&stage, &plant, (&nominal, &found), window)?;
     clock.stage("write", 1.0);
     let findings = Findings {
         title: set.title.clone(),
@@ -182,14 +182,14 @@ pub(crate) fn cut(built: &Built, tapes: &[Tape], window: Option<f64>, wanted: im
     let spans = runs.flat_map(|run| windows(&tapes[run], window).into_iter().map(move |span| (run, span)));
     let segment = |(run, span): (usize, Span)| {
         let start = guess(built, &tapes[run], span.from);
-        Segment { run, span, guess: Arc::new(start.clone()), start, columns: None }
+        Segment { run, span, guess: Arc::new(start.clone()), start, weight: 1.0, columns: None }
     };
     spans.map(segment).collect()
 }
 
 /// Whole runs, from the starts of their first windows.
-pub(crate) fn joined(fit: &Fit, tapes: &[Tape]) -> Vec<Segment> {
-    let first = fit.segments.iter().filter(|s| s.span.from == tapes[s.run].span.0);
+pub(crate) fn joined(windows: &[Segment], tapes: &[Tape]) -> Vec<Segment> {
+    let first = windows.iter().filter(|s| s.span.from == tapes[s.run].span.0);
     first
         .map(|s| Segment { span: Span { from: s.span.from, to: tapes[s.run].span.1 }, columns: None, ..s.clone() })
         .collect()

@@ -10,7 +10,9 @@ use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::{Segment, Stage};
+use crate::pace;
 use crate::plant::Plant;
+use crate::replay::Pace;
 use crate::screen::{Score, screen};
 
 /// What happened to one hypothesis in one round.
@@ -52,7 +54,7 @@ pub struct Limits {
 /// Refits of a first look, and of a kept set.
 const LOOK: Effort = Effort { iterations: 6, share: 2e-3, reuse: true };
 /// Until it has converged.
-const WHOLE: Effort = Effort { iterations: 12, share: 1e-5, reuse: false };
+const WHOLE: Effort = Effort { iterations: 12, share: 1e-5, reuse: true };
 /// Promise relative to the best below which a hypothesis is not refitted.
 const PROMISING: f64 = 0.15;
 
@@ -69,6 +71,9 @@ pub fn is_significant(fit: &Fit, limits: &Limits) -> bool {
     fit.excess() > (limits.sigmas * fit.spread()).max(LEAST * fit.count as f64)
 }
 
+/// What could act beside a fitted set.
+pub type Candidates<'a> = dyn Fn(&Stage<'_>, &Fit) -> Result<Vec<Hypothesis>, DiagnoseError> + 'a;
+
 /// A set of effects, fitted at both lengths.
 #[derive(Clone, Debug)]
 pub struct Standing {
@@ -79,6 +84,24 @@ pub struct Standing {
 }
 
 impl Standing {
+    /// One set at both lengths.
+    pub fn new(stage: &Stage<'_>, windows: Fit, whole: Fit) -> Result<Self, DiagnoseError> {
+        let standing = Self { windows, whole };
+        Ok(if standing.follows() { standing.weighted(stage) } else { standing })
+    }
+
+    /// Where whole runs judge, windows are only there to begin from: none of them counts for more than all that is in it.
+    fn weighted(mut self, stage: &Stage<'_>) -> Self {
+        for segment in &mut self.windows.segments {
+            segment.columns = None;
+            segment.weight = 1.0;
+            let r = stage.residuals(&self.windows.built, segment);
+            segment.weight = (r.len() as f64 / r.norm_squared()).min(1.0);
+        }
+        (self.windows.cost, _) = stage.cost(&self.windows.built, &self.windows.segments);
+        self
+    }
+
     /// The fit that judges: whole runs where these follow, else the windows.
     pub fn judge(&self) -> &Fit {
         if self.follows() { &self.whole } else { &self.windows }
@@ -96,7 +119,7 @@ impl Standing {
             let whole = fit(stage, plant, set, self.whole.segments.clone(), effort)?;
             let windows = fit(stage, plant, whole.set.frozen(), self.windows.segments.clone(), Effort::STARTS)?;
             let windows = Fit { set: whole.set.clone(), ..windows };
-            return Ok(Self { windows, whole });
+            return Ok(Self { windows, whole }.weighted(stage));
         }
         let windows = fit(stage, plant, set.clone(), self.windows.segments.clone(), effort)?;
         let now = if set.slots().is_empty() { fixed } else { windows.set.frozen() };
@@ -110,12 +133,23 @@ impl Standing {
 
 /// Whole runs with their starts fitted, where these are near enough for that.
 pub fn follow(stage: &Stage<'_>, plant: &Plant, set: EffectSet, segments: &[Segment]) -> Result<Fit, DiagnoseError> {
-    let none = Effort { iterations: 0, ..Effort::STARTS };
+    follow_with(stage, plant, set, segments, Effort::STARTS)
+}
+
+/// The same with an effort of its own.
+pub fn follow_with(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    set: EffectSet,
+    segments: &[Segment],
+    effort: Effort,
+) -> Result<Fit, DiagnoseError> {
+    let none = Effort { iterations: 0, ..effort };
     let first = fit(stage, plant, set, segments.to_vec(), none)?;
     if first.rms() > HOPELESS {
         return Ok(Fit { segments: segments.to_vec(), ..first });
     }
-    fit(stage, plant, first.set, first.segments, Effort::STARTS)
+    fit(stage, plant, first.set, first.segments, effort)
 }
 
 /// Root mean square over whole runs from the starts of windows beyond which no start makes them follow.
@@ -130,32 +164,32 @@ const WORTHWHILE: f64 = 0.03;
 const RIVAL: f64 = 0.9;
 /// Share of the excess that the plainer hypotheses must leave for those that are dear to screen.
 const UNEXPLAINED: f64 = 0.05;
+/// Hypotheses, best first, that are screened over whole runs after windows.
+const SCREENED: usize = 40;
 /// Share of the best fall in the windows from which on a refit goes on to whole runs.
 const NEARLY: f64 = 0.6;
 
 /// Adds and removes effects until nothing significant is left or nothing helps.
+///
+/// Returns the pace at which the last set was fitted: what an effect brings may need finer steps than the nominal model does.
 pub fn search(
-    stage: &Stage<'_>,
+    stage: &mut Stage<'_>,
     plant: &Plant,
     mut now: Standing,
-    hypotheses: &dyn Fn(&Fit) -> Result<Vec<Hypothesis>, DiagnoseError>,
+    hypotheses: &Candidates<'_>,
     limits: &Limits,
 ) -> Result<(Standing, Vec<Attempt>), DiagnoseError> {
     let mut attempts = Vec::new();
     let mut round = 0;
     while is_significant(now.judge(), limits) && now.judge().set.members.len() < limits.effects {
         let is_active = |h: &Hypothesis| now.judge().set.members.iter().any(|(m, _)| m.title() == h.title());
-        let all = hypotheses(&now.windows)?;
+        let all = hypotheses(stage, &now.windows)?;
         let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) =
             all.iter().cloned().filter(|h| !is_active(h)).partition(|h| h.is_dear);
         let mut best: Option<Standing> = None;
         // What is dear to screen is screened only where the rest leaves something.
         for some in [cheap, dear] {
-            let is_enough = |b: &Standing| {
-                !is_significant(b.judge(), limits)
-                    || b.follows() == now.follows() && b.judge().excess() < UNEXPLAINED * now.judge().excess()
-            };
-            if best.as_ref().is_some_and(is_enough) {
+            if best.as_ref().is_some_and(|b| is_enough(&now, b, limits)) {
                 break;
             }
             let (other, mut tried) = refit_best(stage, plant, &now, &some, (limits, round))?;
@@ -175,6 +209,7 @@ pub fn search(
         let of_round = attempts.iter_mut().filter(|t| t.round == round);
         of_round.for_each(|t| t.kept = format!("{} at {}", t.name, t.place) == added);
         let set = best.judge().set.clone();
+        refine(stage, &best);
         now = best.refit(stage, plant, set, WHOLE)?;
         stage.work.watch.step(&format!("kept {added}: {}", errors(&now)));
         now = prune(stage, plant, now)?;
@@ -182,6 +217,19 @@ pub fn search(
         round += 1;
     }
     Ok((now, attempts))
+}
+
+/// Takes finer steps where the found model needs them.
+fn refine(stage: &mut Stage<'_>, standing: &Standing) {
+    let Standing { windows, .. } = standing;
+    let found = pace::choose(stage, &windows.built, &windows.segments, stage.pace.step);
+    if found.pace.step < stage.pace.step || found.pace.free < stage.pace.free {
+        stage.pace = Pace {
+            step: found.pace.step.min(stage.pace.step),
+            free: found.pace.free.min(stage.pace.free).max(found.pace.step),
+        };
+        stage.work.watch.step(&format!("steps of {:.3e} s, {:.3e} s in free flight", stage.pace.step, stage.pace.free));
+    }
 }
 
 /// Whether one standing is better than another: whole runs that follow, then the criterion.
@@ -206,69 +254,87 @@ fn refit_best(
     (limits, round): (&Limits, usize),
 ) -> Result<(Option<Standing>, Vec<Attempt>), DiagnoseError> {
     let mut attempts: Vec<Attempt> = Vec::new();
-    let mut ready: Vec<(usize, Fit, bool)> = Vec::new();
-    let levels = [(&now.windows, true, true), (&now.whole, false, now.whole.rms() < LINEAR)];
-    for (fit_here, is_window, _) in levels.into_iter().filter(|l| l.2) {
-        stage.work.watch.step(&format!("screen {} hypotheses beside error {:.3}", all.len(), fit_here.rms()));
-        let scores = screen(stage, plant, fit_here, all)?;
-        let interesting = scores_of_interest(all, &scores);
-        let picked = pick(fit_here, all, &interesting, limits.refits);
-        for score in interesting {
-            let h = &all[score.hypothesis];
-            let at = match attempts.iter().position(|a| a.name == h.name && a.place == h.place) {
-                Some(at) => at,
-                None => {
-                    attempts.push(Attempt::new(round, h, score, fit_here));
-                    attempts.len() - 1
-                }
-            };
-            if !picked.iter().any(|p| std::ptr::eq(*p, score)) {
-                continue;
-            }
-            // A promise is seldom exceeded: what promises less than another has brought already is left alone.
-            let brought = ready.iter().filter(|r| r.2 == is_window).map(|r| fit_here.cost - r.1.cost).fold(0.0, f64::max);
-            if score.score < RIVAL * brought {
-                continue;
-            }
-            let Some(start) = possible(stage, plant, fit_here, h, &score.start) else { continue };
-            let set = now.judge().set.with(h, &start);
-            let Ok(tried) = fit(stage, plant, set, fit_here.segments.clone(), LOOK) else { continue };
-            let said = format!("refit {}: error {:.3} → {:.3}", h.title(), fit_here.rms(), tried.rms());
-            stage.work.watch.step(&said);
-            attempts[at].tell(fit_here, &tried);
-            ready.push((at, tried, is_window));
-        }
-    }
     let mut best: Option<Standing> = None;
-    let fall = |tried: &Fit, is_window: bool| {
-        let before = if is_window { &now.windows } else { &now.whole };
-        before.cost - tried.cost
-    };
-    let most = |windows: bool| ready.iter().filter(|r| r.2 == windows).map(|r| fall(&r.1, r.2)).fold(0.0, f64::max);
-    let most = [most(true), most(false)];
-    for (at, tried, is_window) in ready {
-        if fall(&tried, is_window) < NEARLY * most[usize::from(!is_window)] {
-            continue;
+    let mut all = all.to_vec();
+    for is_window in [true, false] {
+        if all.is_empty() {
+            break;
         }
-        let standing = if is_window {
-            let whole = follow(stage, plant, tried.set.frozen(), &now.whole.segments)?;
-            let set = tried.set.clone();
-            let whole = Fit { set: set.clone(), ..whole };
-            let standing = Standing { windows: tried, whole };
-            if standing.follows() { standing.refit(stage, plant, set, LOOK)? } else { standing }
-        } else {
-            Standing { windows: now.windows.clone(), whole: tried }
-        };
-        let name = format!("{} at {}", attempts[at].name, attempts[at].place);
-        stage.work.watch.step(&format!("{name}: {}", errors(&standing)));
-        if standing.follows() && now.follows() {
-            attempts[at].tell(&now.whole, &standing.whole);
+        let here = if is_window { &now.windows } else { &now.whole };
+        // What is found in windows and explains whole runs needs no screen over these.
+        let is_done = best.as_ref().is_some_and(|b| is_enough(now, b, limits));
+        if !is_window && (is_done || here.rms() > LINEAR) {
+            break;
         }
-        if best.as_ref().is_none_or(|b| is_better(&standing, b)) {
-            best = Some(standing);
+        let ready = refit_promising(stage, plant, here, &all, (limits, round), &mut attempts)?;
+        // Over whole runs only what the windows did not rule out is screened.
+        let order: Vec<(String, String)> =
+            attempts.iter().take(SCREENED).map(|a| (a.name.clone(), a.place.clone())).collect();
+        all.retain(|h| order.iter().any(|(name, place)| h.name == name && h.place == *place));
+        let most = ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max);
+        for (at, tried) in ready {
+            if here.cost - tried.cost < NEARLY * most {
+                continue;
+            }
+            let standing = if is_window {
+                let (set, whole) = (tried.set.clone(), follow(stage, plant, tried.set.frozen(), &now.whole.segments)?);
+                let standing = Standing { windows: tried, whole: Fit { set: set.clone(), ..whole } };
+                if standing.follows() { standing.refit(stage, plant, set, LOOK)? } else { standing }
+            } else {
+                Standing { windows: now.windows.clone(), whole: tried }
+            };
+            let name = format!("{} at {}", attempts[at].name, attempts[at].place);
+            stage.work.watch.step(&format!("{name}: {}", errors(&standing)));
+            if standing.follows() && now.follows() {
+                attempts[at].tell(&now.whole, &standing.whole);
+            }
+            if best.as_ref().is_none_or(|b| is_better(&standing, b)) {
+                best = Some(standing);
+            }
         }
     }
     Ok((best, attempts))
+}
+
+/// Whether a standing leaves so little of what there was that other hypotheses need not be looked for in this round.
+fn is_enough(now: &Standing, best: &Standing, limits: &Limits) -> bool {
+    !is_significant(best.judge(), limits)
+        || best.follows() == now.follows() && best.judge().excess() < UNEXPLAINED * now.judge().excess()
+}
+
+/// Screens at one length and refits there what is most promising: index of the attempt and fit.
+fn refit_promising(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    here: &Fit,
+    all: &[Hypothesis],
+    (limits, round): (&Limits, usize),
+    attempts: &mut Vec<Attempt>,
+) -> Result<Vec<(usize, Fit)>, DiagnoseError> {
+    stage.work.watch.step(&format!("screen {} hypotheses beside error {:.3}", all.len(), here.rms()));
+    let scores = screen(stage, plant, here, all)?;
+    let interesting = scores_of_interest(all, &scores);
+    let picked = pick(here, all, &interesting, limits.refits);
+    let mut ready: Vec<(usize, Fit)> = Vec::new();
+    for score in interesting {
+        let h = &all[score.hypothesis];
+        let known = attempts.iter().position(|a| a.name == h.name && a.place == h.place);
+        let at = known.unwrap_or(attempts.len());
+        if known.is_none() {
+            attempts.push(Attempt::new(round, h, score, here));
+        }
+        // A promise is seldom exceeded: what promises less than another has brought already is left alone.
+        let brought = ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max);
+        if !picked.iter().any(|p| std::ptr::eq(*p, score)) || score.score < RIVAL * brought {
+            continue;
+        }
+        let Some(start) = possible(stage, plant, here, h, &score.start) else { continue };
+        let Ok(tried) = fit(stage, plant, here.set.with(h, &start), here.segments.clone(), LOOK) else { continue };
+        stage.work.watch.step(&format!("refit {}: error {:.3} → {:.3}", h.title(), here.rms(), tried.rms()));
+        attempts[at].tell(here, &tried);
+        ready.push((at, tried));
+    }
+    Ok(ready)
 }
 
 impl Attempt {
@@ -278,7 +344,7 @@ impl Attempt {
             name: h.name.to_owned(),
             place: h.place.clone(),
             score: score.score,
-            share: score.score / beside.excess().max(1.0),
+            share: score.score / beside.excess().max(0.2 * beside.count as f64),
             fall: None,
             parameters: score.rank,
             gain: None,

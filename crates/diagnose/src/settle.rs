@@ -4,8 +4,10 @@
 //!
 //! A segment whose events do not yet follow the model stays behind without holding up the others.
 
+use crate::fit::Effort;
 use crate::linear::{Segment, SegmentLinear, Stage, StartColumns, eliminate};
 use crate::plant::Built;
+use crate::replay::starts_along;
 use crate::start::{Start, freedoms};
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -34,6 +36,20 @@ pub struct Settled {
 }
 
 impl Stage<'_> {
+    /// Windows of runs that are followed as a whole begin where the whole run is then.
+    pub fn along(&self, built: &Built, whole: &[Segment], windows: &mut [Segment]) {
+        let of_run = |run: &Segment| {
+            let own: Vec<usize> = (0..windows.len()).filter(|i| windows[*i].run == run.run).collect();
+            let instants: Vec<f64> = own.iter().map(|i| windows[*i].span.from).collect();
+            let starts = starts_along(built, &self.tapes[run.run], &run.start, self.pace, &instants).unwrap_or_default();
+            own.into_iter().zip(starts).collect::<Vec<_>>()
+        };
+        let found: Vec<(usize, Start)> = whole.par_iter().flat_map(of_run).collect();
+        for (i, start) in found {
+            (windows[i].start, windows[i].columns) = (start, None);
+        }
+    }
+
     /// Fits every start, `iterations` linearisations at most, until one promises less than `share` of the segment's excess.
     pub fn fit_starts(&self, built: &Built, segments: &[Segment], (iterations, share): (usize, f64)) -> Vec<Settled> {
         // The first segment finds the steps of the difference quotients for all.
@@ -59,6 +75,9 @@ impl Stage<'_> {
         };
         let mut now = (finite(r.norm_squared()), 0, 0, false);
         let mut damping = 0.0;
+        // What is as near as noise lets it be needs no derivatives.
+        let noise = r.len() as f64 + (2.0 * r.len() as f64).sqrt();
+        now.3 = share >= Effort::JUDGED.share && now.0 < noise;
         while now.2 < iterations && !now.3 {
             let (columns, used) = self.quotients(built, &segment, &r, (&all, &sizes)).into_iter().unzip();
             sizes = used;

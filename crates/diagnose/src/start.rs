@@ -89,6 +89,33 @@ impl Start {
         }
     }
 
+    /// The start that continues from where a replay is.
+    pub fn of(built: &Built, run: usize, world: &World) -> Self {
+        let state = world.state();
+        let mut start = Self {
+            time: state.time,
+            bases: state.bases.clone(),
+            twists: (0..state.bases.len()).map(|v| world.kinematics(v).vel[0]).collect(),
+            q: state.q.clone(),
+            v: state.v.clone(),
+            memory: vec![0.0; count_memory(built)],
+            bristles: Vec::new(),
+        };
+        let mut fresh = start.world(built, run);
+        fresh.commands_mut().copy_from_slice(&state.commands);
+        fresh.settle_effects();
+        start.memory = world.effect_memory().iter().zip(fresh.effect_memory()).map(|(now, rest)| now - rest).collect();
+        let found = RefCell::new(Vec::new());
+        fresh.seed_bristles(|_, touch| {
+            let own = state.bristles.iter().find(|m| (m.pair as usize, m.feature) == (touch.pair, touch.feature));
+            let s = own.map_or(Vec3::zeros(), |m| m.s_w);
+            found.borrow_mut().push(s);
+            s
+        });
+        start.bristles = found.into_inner();
+        start
+    }
+
     /// The same for a model with other memory: slots that it does not know begin at rest.
     pub fn fitted_to(&self, built: &Built) -> Self {
         let mut start = self.clone();
