@@ -145,6 +145,11 @@ impl Hypothesis {
         format!("{} at {}", self.name, self.place)
     }
 
+    /// Whether the cost has a valley for each frequency, and one refit may end in the wrong one.
+    pub fn has_valleys(&self) -> bool {
+        matches!(self.name, "slosh" | "flexible-appendage")
+    }
+
     /// Neutral or typical coordinates.
     pub fn neutral(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.neutral).collect()
@@ -255,11 +260,7 @@ impl Hypothesis {
         }
         let axis = eigen.eigenvectors.column(at).into_owned();
         let mut x = columns[0].direction.clone();
-        let length = if self.name == "slosh" { vector(&columns[0]).norm() } else { largest.sqrt() };
-        if self.name == "slosh" {
-            x[0] *= largest / length.powi(2);
-        }
-        (0..3).for_each(|k| x[first + k] = length * axis[k]);
+        (0..3).for_each(|k| x[first + k] = largest.sqrt() * axis[k]);
         Some(self.clamped(&x))
     }
 

@@ -19,7 +19,7 @@ use crate::locate::{Located, locate, places};
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::{Pace, Span};
-use crate::search::{Attempt, Limits, Standing, follow, is_significant, search};
+use crate::search::{Attempt, DIVERGED, Limits, Standing, follow, is_significant, search};
 use crate::tape::Tape;
 use crate::tell;
 use crate::work::{Watch, Work};
@@ -78,7 +78,11 @@ pub fn diagnose(
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
     clock.stage("search", 0.25);
     let whole = follow(&stage, &plant, EffectSet::default(), &joined(&nominal.segments, &thinned))?;
-    let standing = Standing::new(&stage, representative(&stage, &nominal), whole)?;
+    let mut some = representative(&stage, &nominal);
+    if whole.rms() < DIVERGED {
+        some = with_thirds(&stage, &plant, some, &thinned)?;
+    }
+    let standing = Standing::new(&stage, some, whole)?;
     let candidates = |stage: &Stage<'_>, now: &Fit| {
         let facts = Facts::new(&now.built, &tapes);
         let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
@@ -215,6 +219,20 @@ fn representative(stage: &Stage<'_>, fit: &Fit) -> Fit {
     let (cost, count) = stage.cost(&fit.built, &segments);
     let freedom = fit.freedom * segments.len() / fit.segments.len();
     Fit { segments, cost, count, freedom, ..fit.clone() }
+}
+
+/// Windows and thirds of runs: what is slow shows in these, also where an event later in the run hides it.
+fn with_thirds(stage: &Stage<'_>, plant: &Plant, windows: Fit, tapes: &[Tape]) -> Result<Fit, DiagnoseError> {
+    let third = tapes.iter().map(|t| (t.span.1 - t.span.0) / 3.0).fold(0.0, f64::max);
+    let segments = cut(&windows.built, tapes, Some(third), |t| t.role == Role::Fit);
+    let thirds = fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)?;
+    Ok(Fit {
+        segments: [windows.segments, thirds.segments].concat(),
+        cost: windows.cost + thirds.cost,
+        count: windows.count + thirds.count,
+        freedom: windows.freedom + thirds.freedom,
+        ..windows
+    })
 }
 
 /// Windows of either kind.

@@ -42,8 +42,8 @@ struct Probe {
 const WISH: f64 = 0.3;
 /// Root mean square below which a probe's step says nothing, units of noise.
 const SILENT: f64 = 1e-3;
-/// Segments that tune the steps.
-const PILOTS: usize = 3;
+/// One in so many segments tunes the steps.
+const PILOTS: usize = 8;
 /// Segments that a screen looks at.
 const SEGMENTS: usize = 24;
 
@@ -131,7 +131,7 @@ fn probes_of(
 
 /// Root mean square of what a changed model does to a few segments.
 fn pilot_size(stage: &Stage<'_>, fit: &Fit, built: &Built) -> f64 {
-    let every = fit.segments.len().div_ceil(PILOTS).max(1);
+    let every = PILOTS.min(fit.segments.len()).max(1);
     let parts = fit.segments.iter().skip(every / 2).step_by(every).map(|segment| {
         let moved = Segment { start: segment.start.fitted_to(built), ..segment.clone() };
         let difference = stage.residuals(built, &moved) - stage.residuals(&fit.built, segment);

@@ -53,8 +53,8 @@ pub struct Limits {
 
 /// Refits of a first look, and of a kept set.
 const LOOK: Effort = Effort { iterations: 6, share: 2e-3, reuse: true };
-/// Until it has converged.
-const WHOLE: Effort = Effort { iterations: 12, share: 1e-5, reuse: true };
+/// Until it has converged as far as the next round needs it; all samples fit the last set to the end.
+const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, reuse: true };
 /// Promise relative to the best below which a hypothesis is not refitted.
 const PROMISING: f64 = 0.15;
 
@@ -155,7 +155,7 @@ pub fn follow_with(
 /// Root mean square over whole runs from the starts of windows beyond which no start makes them follow.
 const HOPELESS: f64 = 3000.0;
 /// Root mean square over whole runs beyond which they do not follow the model at all, and windows judge.
-const DIVERGED: f64 = 300.0;
+pub(crate) const DIVERGED: f64 = 300.0;
 /// Root mean square over whole runs up to which a screen over them says something.
 const LINEAR: f64 = 60.0;
 /// Share of the remaining excess that an effect must take away.
@@ -164,8 +164,10 @@ const WORTHWHILE: f64 = 0.03;
 const RIVAL: f64 = 0.9;
 /// Share of the excess that the plainer hypotheses must leave for those that are dear to screen.
 const UNEXPLAINED: f64 = 0.05;
+/// Hypotheses of a screen that a watcher hears of.
+const TOLD: usize = 6;
 /// Hypotheses, best first, that are screened over whole runs after windows.
-const SCREENED: usize = 40;
+const SCREENED: usize = 30;
 /// Share of the best fall in the windows from which on a refit goes on to whole runs.
 const NEARLY: f64 = 0.6;
 
@@ -212,11 +214,10 @@ pub fn search(
         refine(stage, &best);
         now = best.refit(stage, plant, set, WHOLE)?;
         stage.work.watch.step(&format!("kept {added}: {}", errors(&now)));
-        now = prune(stage, plant, now)?;
         now = simplify(stage, plant, now, &all)?;
         round += 1;
     }
-    Ok((now, attempts))
+    Ok((prune(stage, plant, now)?, attempts))
 }
 
 /// Takes finer steps where the found model needs them.
@@ -315,6 +316,11 @@ fn refit_promising(
     let scores = screen(stage, plant, here, all)?;
     let interesting = scores_of_interest(all, &scores);
     let picked = pick(here, all, &interesting, limits.refits);
+    for score in interesting.iter().take(TOLD) {
+        let h = &all[score.hypothesis];
+        let (label, share) = (&h.screens[score.point].label, 100.0 * score.score / here.cost);
+        stage.work.watch.step(&format!("  {} {label} promises {share:.1} % of the cost", h.title()));
+    }
     let mut ready: Vec<(usize, Fit)> = Vec::new();
     for score in interesting {
         let h = &all[score.hypothesis];
@@ -325,14 +331,19 @@ fn refit_promising(
         }
         // A promise is seldom exceeded: what promises less than another has brought already is left alone.
         let brought = ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max);
-        if !picked.iter().any(|p| std::ptr::eq(*p, score)) || score.score < RIVAL * brought {
+        let is_hopeless = score.score < RIVAL * brought && !h.has_valleys();
+        if !picked.iter().any(|p| std::ptr::eq(*p, score)) || is_hopeless {
             continue;
         }
         let Some(start) = possible(stage, plant, here, h, &score.start) else { continue };
         let Ok(tried) = fit(stage, plant, here.set.with(h, &start), here.segments.clone(), LOOK) else { continue };
         stage.work.watch.step(&format!("refit {}: error {:.3} → {:.3}", h.title(), here.rms(), tried.rms()));
-        attempts[at].tell(here, &tried);
-        ready.push((at, tried));
+        if attempts[at].fall.is_none_or(|fall| here.cost - tried.cost > fall) {
+            attempts[at].tell(here, &tried);
+        }
+        if tried.cost < here.cost {
+            ready.push((at, tried));
+        }
     }
     Ok(ready)
 }
@@ -380,19 +391,22 @@ fn possible(stage: &Stage<'_>, plant: &Plant, now: &Fit, h: &Hypothesis, promise
 /// Halvings of a promise.
 const SHARES: i32 = 5;
 
-/// The best screen point of each hypothesis, best first.
+/// The best screen points of each hypothesis, best first: one of each, and a few where the cost has many valleys.
 fn scores_of_interest<'s>(all: &[Hypothesis], scores: &'s [Score]) -> Vec<&'s Score> {
-    let mut seen: Vec<String> = Vec::new();
+    let mut seen: Vec<usize> = vec![0; all.len()];
     let mut kept = Vec::new();
     for score in scores {
-        let title = all[score.hypothesis].title();
-        if !seen.contains(&title) {
-            seen.push(title);
+        let most = if all[score.hypothesis].has_valleys() { VALLEYS } else { 1 };
+        if seen[score.hypothesis] < most {
+            seen[score.hypothesis] += 1;
             kept.push(score);
         }
     }
     kept
 }
+
+/// Screen points from which a hypothesis with many valleys is refitted.
+const VALLEYS: usize = 3;
 
 /// The hypotheses worth a refit: the most promising, one of each, nominal numbers among them if they promise anything.
 fn pick<'s>(now: &Fit, all: &[Hypothesis], interesting: &[&'s Score], most: usize) -> Vec<&'s Score> {
@@ -401,8 +415,10 @@ fn pick<'s>(now: &Fit, all: &[Hypothesis], interesting: &[&'s Score], most: usiz
     let worth = |s: &&&Score| s.score > (PROMISING * best).max(penalty * s.rank as f64);
     let mut picked: Vec<&Score> = Vec::new();
     for score in interesting.iter().filter(worth) {
-        let of_family = picked.iter().filter(|p| all[p.hypothesis].name == all[score.hypothesis].name).count();
-        if picked.len() < most && of_family == 0 {
+        let same = |p: &&&Score| all[p.hypothesis].name == all[score.hypothesis].name;
+        let is_new = !picked.iter().any(|p| same(&p));
+        let is_valley = picked.iter().any(|p| p.hypothesis == score.hypothesis);
+        if picked.len() < most && is_new || is_valley {
             picked.push(score);
         }
     }
@@ -447,8 +463,7 @@ fn simplify(
         let tried = now.refit(stage, plant, set.without(member).with(plain, &[value]), LOOK)?;
         if tried.follows() == now.follows() && criterion(tried.judge()) <= criterion(now.judge()) {
             stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
-            let set = tried.judge().set.clone();
-            now = tried.refit(stage, plant, set, WHOLE)?;
+            now = tried;
         }
     }
     Ok(now)

@@ -24,9 +24,13 @@ fn add(place: &str, largest: f64, all: &mut Vec<Hypothesis>) {
     let gain = vec![Coordinate::free("gain", 1.0)];
     all.push(hypothesis("actuator-gain", place, gain).screened(&[(0, 1e-4)]));
     let delay = vec![Coordinate { bounds: [0.0, 0.5], ..Coordinate::level("delay", 0.0) }];
-    all.push(hypothesis("actuator-delay", place, delay).screened_at("", &[vec![4e-3]]));
+    let mut late = hypothesis("actuator-delay", place, delay).screened_at("", &[vec![4e-3]]);
+    late.is_dear = largest == 0.0;
+    all.push(late);
     let lag = vec![Coordinate::log("time_constant", 5e-3, [1e-5, 2.0])];
-    all.push(hypothesis("actuator-lag", place, lag).screened_at("", &[vec![5e-3_f64.ln()]]));
+    let mut slow = hypothesis("actuator-lag", place, lag).screened_at("", &[vec![5e-3_f64.ln()]]);
+    slow.is_dear = largest == 0.0;
+    all.push(slow);
     if largest > 0.0 {
         let limit = vec![Coordinate::log("limit", 0.8 * largest, [1e-3 * largest, largest])];
         let at = |share: f64| vec![vec![(share * largest).ln()]];

@@ -112,24 +112,27 @@ fn add_internal(body: &BodyFact, place: &str, facts: &Facts, all: &mut Vec<Hypot
     ));
     let tide = vec![Coordinate::level("mean_motion", 0.0)];
     all.push(hypothesis("gravity-gradient", place, tide).encoded(Encoding::Squared).screened(&[(0, 1e-7)]));
-    let grid = log_grid((6.0 / facts.duration).max(0.02), 2.0, 1.0);
+    let grid = log_grid((6.0 / facts.duration).max(0.02), 2.0, 2.0);
     all.push(slosh(body, place, &grid));
     all.push(appendage(body, place, &grid));
 }
 
 fn slosh(body: &BodyFact, place: &str, grid: &[f64]) -> Hypothesis {
+    let mass = 0.01 * body.mass;
     let mut coordinates = vec![
-        Coordinate { bounds: [0.0, 0.5 * body.mass], ..Coordinate::level("mass", 0.0) },
+        Coordinate { bounds: [0.0, 0.5 * body.mass], ..Coordinate::level("mass", mass) },
         Coordinate::log("frequency", 0.1, [5e-3, 20.0]),
         Coordinate::log("damping", 0.02, [1e-4, 1.0]),
     ];
-    coordinates.extend((0..3).map(|k| Coordinate { bounds: [-3.0, 3.0], ..Coordinate::free(POSITION[k], 0.0) }));
+    coordinates.extend((0..3).map(|k| Coordinate { bounds: [-10.0, 10.0], ..Coordinate::free(POSITION[k], 0.0) }));
     let mut h = hypothesis("slosh", place, coordinates);
+    // A tumble shows m p pᵀ: the mass alone stays as it is.
+    h.held = vec![0];
     h.is_dear = true;
     for f in grid {
         let point = |axis: &Vec3| {
             let mut x = h.neutral();
-            (x[0], x[1]) = (0.01 * body.mass, f.ln());
+            (x[0], x[1]) = (mass, f.ln());
             (0..3).for_each(|k| x[3 + k] = 0.3 * axis[k]);
             x
         };
