@@ -9,7 +9,7 @@
 
 use crate::error::DiagnoseError;
 use crate::hypothesis::Hypothesis;
-use crate::linear::{Segment, Stage, Steps, Variation, sum_reduced};
+use crate::linear::{Segment, SegmentLinear, Stage, Steps, Variation, sum_reduced};
 use crate::plant::{Built, Plant};
 use nalgebra::{DMatrix, DVector};
 use scenario::spec::Effect;
@@ -212,11 +212,11 @@ fn iterate(
     now.freedom = n + linear.iter().map(|s| s.shown).sum::<usize>();
     now.covariance = pseudo_inverse(&a);
     let promised = now.cost - left + (b.transpose() * &now.covariance * &b)[(0, 0)];
+    let was_known = effort.reuse && now.segments.iter().any(|s| s.columns.is_some());
     if promised < NEXT_TO_NOTHING.max(effort.share * now.excess()) {
         now.converged = true;
         return Ok(damping);
     }
-    let was_known = effort.reuse && now.segments.iter().any(|s| s.columns.is_some());
     now.segments.iter_mut().zip(&linear).for_each(|(s, l)| s.columns.clone_from(&l.columns));
     for trial in 0..DAMPINGS {
         if trial == 2 && was_known {
@@ -224,6 +224,9 @@ fn iterate(
             now.segments.iter_mut().for_each(|s| s.columns = None);
             return Ok(damping);
         }
+        let linear: Vec<SegmentLinear> = linear.iter().map(|l| l.damped(damping)).collect();
+        let k = sum_reduced(&linear);
+        let (a, b) = (k.view((0, 0), (n, n)).into_owned(), k.view((0, n), (n, 1)).into_owned());
         let theta = step(&a, &b, damping);
         let set = now.set.moved(&slots, theta.as_slice());
         let actual: Vec<f64> = slots.iter().map(|(m, c)| set.members[*m].1[*c] - now.set.members[*m].1[*c]).collect();
@@ -232,7 +235,12 @@ fn iterate(
             if cost < now.cost {
                 let gained = now.cost - cost;
                 (now.set, now.built, now.segments, now.cost) = (set, built, segments, cost);
-                now.converged = gained < NEXT_TO_NOTHING.max(effort.share * now.excess());
+                // A step that had to be shortened says nothing about the end of the way, nor does one along old derivatives.
+                let is_plain = trial == 0 && !was_known;
+                now.converged = is_plain && gained < NEXT_TO_NOTHING.max(effort.share * now.excess());
+                if trial > 0 && was_known {
+                    now.segments.iter_mut().for_each(|s| s.columns = None);
+                }
                 return Ok((damping * 0.1).max(1e-9));
             }
         }

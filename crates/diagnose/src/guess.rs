@@ -36,7 +36,8 @@ pub fn guess(built: &Built, tape: &Tape, time: f64) -> Start {
         }
     }
     if time > tape.span.0 {
-        let measured: Vec<Option<Twist>> = (0..built.model.vehicles.len()).map(|v| acceleration(v, tape, time)).collect();
+        let measured: Vec<Option<Twist>> =
+            (0..built.model.vehicles.len()).map(|v| acceleration(v, tape, time)).collect();
         start.free_bristles(built, tape.index, &measured);
     }
     start

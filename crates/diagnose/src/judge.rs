@@ -66,7 +66,8 @@ pub fn judge(
         }
         let windowed = fit(stage, plant, set.clone(), windows, Effort::JUDGED)?;
         let far = whole.rms() >= NEAR;
-        let whole = if far { follow_with(stage, plant, set, &first(&windowed.segments), Effort::JUDGED)? } else { whole };
+        let whole =
+            if far { follow_with(stage, plant, set, &first(&windowed.segments), Effort::JUDGED)? } else { whole };
         Ok((predict(windowed), predict(whole)))
     };
     let before = of(nominal)?;

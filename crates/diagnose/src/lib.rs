@@ -47,5 +47,5 @@ pub use patched::{FILE as PATCHED_FILE, patched_toml};
 pub use report::report_html;
 pub use run::diagnose;
 pub use summary::summary_text;
-pub use work::Watch;
 pub use vocabulary::{plain_name, unit};
+pub use work::Watch;

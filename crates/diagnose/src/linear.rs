@@ -71,6 +71,8 @@ pub struct SegmentLinear {
     pub taken: DMatrix<f64>,
     /// The start's columns.
     pub columns: Option<Arc<StartColumns>>,
+    /// H_ss, H_sp and H_pp.
+    pub gram: [DMatrix<f64>; 3],
 }
 
 /// Steps of the difference quotients by coordinate of the start; they live from one linearisation to the next.
@@ -85,6 +87,8 @@ const DAMPING: f64 = 1e-9;
 const WISH: f64 = 0.2;
 /// Root mean square below which a change of the residual is rounding, units of noise.
 const ROUNDING: f64 = 1e-5;
+/// Longest step of a start's coordinate, its own unit.
+const LONGEST: f64 = 1.0;
 /// Range of that within which a step is kept.
 const FAIR: [f64; 2] = [0.02, 2.0];
 
@@ -252,11 +256,15 @@ fn quotient(r: &DVector<f64>, first: f64, moved: impl Fn(f64) -> DVector<f64>) -
         let column = moved(step) - r;
         let size = (column.norm_squared() / (r.len().max(1) as f64)).sqrt();
         let fair = (FAIR[0]..FAIR[1]).contains(&size);
-        if fair || trial == 3 || size == 0.0 {
+        // What no reading shows (a place that nothing measures) must not be estimated from rounding.
+        if size == 0.0 || step >= LONGEST && size < ROUNDING {
+            return (DVector::zeros(r.len()), step);
+        }
+        if fair || trial == 3 {
             return (sane(column / step), step);
         }
         step *= if size.is_finite() { (WISH / size.max(1e-12)).clamp(1e-4, 1e4) } else { 1e-3 };
-        step = step.clamp(1e-13, 1.0);
+        step = step.clamp(1e-13, LONGEST);
     }
     (DVector::zeros(r.len()), step)
 }
@@ -265,35 +273,43 @@ fn quotient(r: &DVector<f64>, first: f64, moved: impl Fn(f64) -> DVector<f64>) -
 pub fn eliminate(s: &[&DVector<f64>], p: &[&DVector<f64>], freedoms: &[Freedom]) -> SegmentLinear {
     let products = |a: &[&DVector<f64>], b: &[&DVector<f64>]| DMatrix::from_fn(a.len(), b.len(), |i, j| a[i].dot(b[j]));
     let (h_ss, h_sp, h_pp) = (products(s, s), products(s, p), products(p, p));
-    let scale = h_ss.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 });
-    let mut scaled = DMatrix::from_fn(s.len(), s.len(), |i, j| h_ss[(i, j)] * scale[i] * scale[j]);
-    for i in 0..s.len() {
-        let held = freedoms.get(i).and_then(Freedom::reach).map_or(0.0, |reach| (scale[i] / reach).powi(2));
-        scaled[(i, i)] += DAMPING + held + if scale[i] == 0.0 { 1.0 } else { 0.0 };
-    }
-    let right = DMatrix::from_fn(s.len(), p.len(), |i, j| scale[i] * h_sp[(i, j)]);
-    let taken = match scaled.cholesky() {
-        Some(c) => {
-            let x = c.solve(&right);
-            DMatrix::from_fn(s.len(), p.len(), |i, j| scale[i] * x[(i, j)])
-        }
-        None => DMatrix::zeros(s.len(), p.len()),
-    };
-    let reduced = &h_pp - h_sp.transpose() * &taken;
     let r = p[p.len() - 1];
-    let shown = scale.iter().filter(|s| **s > 0.0).count();
-    SegmentLinear {
+    let shown = h_ss.diagonal().iter().filter(|d| **d > 0.0).count();
+    let linear = SegmentLinear {
         count: r.len(),
         shown,
         cost: finite(r.norm_squared()),
         freedoms: freedoms.to_vec(),
-        reduced,
-        taken,
+        reduced: DMatrix::zeros(0, 0),
+        taken: DMatrix::zeros(0, 0),
         columns: None,
-    }
+        gram: [h_ss, h_sp, h_pp],
+    };
+    linear.damped(0.0)
 }
 
 impl SegmentLinear {
+    /// The same with the start's part of the normal equations damped, H_ss + λ diag H_ss: what the data hardly show goes less far.
+    pub fn damped(&self, damping: f64) -> Self {
+        let [h_ss, h_sp, h_pp] = &self.gram;
+        let (n, width) = h_sp.shape();
+        let scale = h_ss.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 });
+        let mut scaled = DMatrix::from_fn(n, n, |i, j| h_ss[(i, j)] * scale[i] * scale[j]);
+        for i in 0..n {
+            let held = self.freedoms.get(i).and_then(Freedom::reach).map_or(0.0, |reach| (scale[i] / reach).powi(2));
+            scaled[(i, i)] += DAMPING + damping + held + if scale[i] == 0.0 { 1.0 } else { 0.0 };
+        }
+        let right = DMatrix::from_fn(n, width, |i, j| scale[i] * h_sp[(i, j)]);
+        let taken = scaled.cholesky().map_or_else(
+            || DMatrix::zeros(n, width),
+            |c| {
+                let x = c.solve(&right);
+                DMatrix::from_fn(n, width, |i, j| scale[i] * x[(i, j)])
+            },
+        );
+        Self { reduced: h_pp - h_sp.transpose() * &taken, taken, ..self.clone() }
+    }
+
     /// Step of the start that goes with a step of the parameters.
     pub fn start_step(&self, theta: &[f64]) -> Vec<f64> {
         let r = self.taken.ncols() - 1;

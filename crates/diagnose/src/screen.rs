@@ -90,13 +90,7 @@ fn active_size(fit: &Fit, m: usize, k: usize) -> f64 {
 }
 
 /// The columns of a screen point with tuned steps; those that cannot be built are left out.
-fn probes_of(
-    stage: &Stage<'_>,
-    plant: &Plant,
-    fit: &Fit,
-    hypothesis: &Hypothesis,
-    point: &ScreenPoint,
-) -> Vec<Probe> {
+fn probes_of(stage: &Stage<'_>, plant: &Plant, fit: &Fit, hypothesis: &Hypothesis, point: &ScreenPoint) -> Vec<Probe> {
     let build = |base: &[f64], direction: &[f64], step: f64| -> Option<Variation> {
         let x: Vec<f64> = base.iter().zip(direction).map(|(b, d)| b + step * d).collect();
         let mut effects = fit.set.effects();
@@ -175,12 +169,7 @@ fn products_of(
 }
 
 /// Columns of the memory that a hypothesis brings, and the steps over which they were taken.
-fn own_columns(
-    stage: &Stage<'_>,
-    segment: &Segment,
-    base: &[Freedom],
-    probe: &Probe,
-) -> (Vec<DVector<f64>>, Vec<f64>) {
+fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: &Probe) -> (Vec<DVector<f64>>, Vec<f64>) {
     let Some(steps) = &probe.memory else { return Default::default() };
     let built = &probe.variation.built;
     let moved = Segment { start: segment.start.fitted_to(built), ..segment.clone() };

@@ -127,7 +127,11 @@ impl Standing {
         let whole = Fit { set: windows.set.clone(), ..whole };
         let standing = Self { windows, whole };
         // They begin to follow: from now on they judge.
-        if standing.follows() { standing.refit(stage, plant, standing.windows.set.clone(), effort) } else { Ok(standing) }
+        if standing.follows() {
+            standing.refit(stage, plant, standing.windows.set.clone(), effort)
+        } else {
+            Ok(standing)
+        }
     }
 }
 
@@ -222,8 +226,7 @@ pub fn search(
 
 /// Takes finer steps where the found model needs them.
 fn refine(stage: &mut Stage<'_>, standing: &Standing) {
-    let Standing { windows, .. } = standing;
-    let found = pace::choose(stage, &windows.built, &windows.segments, stage.pace.step);
+    let found = pace::choose(stage, &standing.judge().built, &standing.windows.segments, stage.pace.step);
     if found.pace.step < stage.pace.step || found.pace.free < stage.pace.free {
         stage.pace = Pace {
             step: found.pace.step.min(stage.pace.step),

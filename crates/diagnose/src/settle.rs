@@ -17,6 +17,8 @@ use std::sync::Arc;
 const SETTLINGS: usize = 2;
 /// Most dampings tried for one linearisation.
 const DAMPINGS: usize = 6;
+/// Smallest damping beside none.
+const LEAST_DAMPING: f64 = 1e-5;
 /// Promised fall of a segment's cost below which its start has converged, variances of noise.
 const NEXT_TO_NOTHING: f64 = 0.1;
 
@@ -41,7 +43,8 @@ impl Stage<'_> {
         let of_run = |run: &Segment| {
             let own: Vec<usize> = (0..windows.len()).filter(|i| windows[*i].run == run.run).collect();
             let instants: Vec<f64> = own.iter().map(|i| windows[*i].span.from).collect();
-            let starts = starts_along(built, &self.tapes[run.run], &run.start, self.pace, &instants).unwrap_or_default();
+            let starts =
+                starts_along(built, &self.tapes[run.run], &run.start, self.pace, &instants).unwrap_or_default();
             own.into_iter().zip(starts).collect::<Vec<_>>()
         };
         let found: Vec<(usize, Start)> = whole.par_iter().flat_map(of_run).collect();
@@ -68,11 +71,8 @@ impl Stage<'_> {
     ) -> (Settled, Vec<f64>) {
         let (mut segment, mut r) = self.nearer(built, segment);
         let all = freedoms(built, &segment.start);
-        let mut sizes: Vec<f64> = if sizes.len() == all.len() {
-            sizes.to_vec()
-        } else {
-            all.iter().map(|f| f.first_step()).collect()
-        };
+        let mut sizes: Vec<f64> =
+            if sizes.len() == all.len() { sizes.to_vec() } else { all.iter().map(|f| f.first_step()).collect() };
         let mut now = (finite(r.norm_squared()), 0, 0, false);
         let mut damping = 0.0;
         // What is as near as noise lets it be needs no derivatives.
@@ -102,7 +102,7 @@ impl Stage<'_> {
         (Settled { segment, cost, shown, iterations, converged }, sizes)
     }
 
-    /// The first step that lowers the cost: the full one, then shorter ones.
+    /// The first step that lowers the cost: the full one, then more and more damped ones.
     fn downhill(
         &self,
         built: &Built,
@@ -110,17 +110,16 @@ impl Stage<'_> {
         linear: &SegmentLinear,
         (cost, damping): (f64, f64),
     ) -> Option<(Segment, DVector<f64>, f64)> {
-        let step = linear.start_step(&[]);
         let known = &segment.columns.as_ref()?.freedoms;
-        let mut share = if damping > 0.0 { (2.0 * damping).min(1.0) } else { 1.0 };
+        let mut damping = if damping > LEAST_DAMPING { 0.1 * damping } else { 0.0 };
         for _ in 0..DAMPINGS {
-            let by: Vec<f64> = step.iter().map(|d| d * share).collect();
-            let moved = Segment { start: segment.start.retract(known, &by), ..segment.clone() };
+            let step = if damping > 0.0 { linear.damped(damping).start_step(&[]) } else { linear.start_step(&[]) };
+            let moved = Segment { start: segment.start.retract(known, &step), ..segment.clone() };
             let r = self.residuals(built, &moved);
             if r.norm_squared() < cost {
-                return Some((moved, r, share));
+                return Some((moved, r, damping));
             }
-            share *= 0.3;
+            damping = (20.0 * damping).max(LEAST_DAMPING);
         }
         None
     }
@@ -146,7 +145,7 @@ impl Stage<'_> {
             for _ in 0..SETTLINGS {
                 let s: Vec<&DVector<f64>> = known.columns.iter().collect();
                 let linear = eliminate(&s, &[&r], &known.freedoms);
-                let Some((moved, after, _)) = self.downhill(built, &now, &linear, (cost, 0.3)) else { break };
+                let Some((moved, after, _)) = self.downhill(built, &now, &linear, (cost, 0.0)) else { break };
                 (now, cost, r) = (moved, finite(after.norm_squared()), after);
             }
             (now, cost)
@@ -180,8 +179,7 @@ impl Stage<'_> {
             }
             best.unwrap_or_else(|| (segment.clone(), f64::INFINITY))
         };
-        let (segments, costs): (Vec<Segment>, Vec<f64>) =
-            segments.par_iter().zip(linear.par_iter()).map(of).unzip();
+        let (segments, costs): (Vec<Segment>, Vec<f64>) = segments.par_iter().zip(linear.par_iter()).map(of).unzip();
         (segments, costs.iter().sum())
     }
 }
