@@ -191,7 +191,7 @@ pub fn search(
         let is_active = |h: &Hypothesis| now.judge().set.members.iter().any(|(m, _)| m.title() == h.title());
         let all = hypotheses(stage, &now.windows)?;
         let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) =
-            all.iter().cloned().filter(|h| !is_active(h)).partition(|h| h.is_dear);
+            all.iter().filter(|h| !is_active(h)).cloned().partition(|h| h.is_dear);
         let mut best: Option<Standing> = None;
         // What is dear to screen is screened only where the rest leaves something.
         for some in [cheap, dear] {
