@@ -1,7 +1,8 @@
 //! A first guess of the state at an instant, from the samples around it.
 //!
 //! A parabola through the nearest samples of each component gives value and rate at the instant; of an orientation, through the rotation
-//! vectors from the nearest sample. What nothing measures stays as the scenario has it.
+//! vectors from the nearest sample. It goes through as many samples as it fits within their noise: an approach before an impact is known the
+//! better the longer it was watched. What nothing measures stays as the scenario has it.
 
 use crate::plant::Built;
 use crate::reading::{Reading, Value};
@@ -11,8 +12,10 @@ use nalgebra::{Matrix3, Vector3};
 use scenario::measure::Quantity;
 use spatial::{Rot, Twist, Vec3, exp_rotation, log_rotation};
 
-/// Samples that a guess looks at.
-const NEAREST: usize = 15;
+/// Samples that a guess looks at, at least and at most.
+const NEAREST: [usize; 2] = [15, 480];
+/// Standard deviations of the mean square up to which a parabola fits.
+const FITTING: f64 = 3.0;
 
 /// The start of a replay at `time`, guessed.
 pub fn guess(built: &Built, tape: &Tape, time: f64) -> Start {
@@ -79,9 +82,7 @@ fn guess_base(start: &mut Start, v: usize, tape: &Tape, time: f64, of_base: impl
 fn acceleration(v: usize, tape: &Tape, time: f64) -> Option<Twist> {
     let mut found = None;
     for reading in tape.readings.iter().filter(|r| r.quantity == Quantity::Position(v, 0)) {
-        let range = nearest(&reading.times, time);
-        let value = |i: usize| if let Value::Vector(v) = reading.values[i] { v } else { Vec3::zeros() };
-        let curvature = parabola(&reading.times[range.clone()], range.map(value), time)?[2];
+        let ([_, _, curvature], _) = longest_parabola(reading, time);
         let twist: &mut Twist = found.get_or_insert_with(Twist::default);
         reading.axes.iter().for_each(|&axis| twist.lin[axis] = 2.0 * curvature[axis]);
     }
@@ -101,33 +102,56 @@ fn mask_twist(twist: &mut Twist, mask: &[bool; 6]) {
 }
 
 /// The samples nearest to an instant.
-fn nearest(times: &[f64], time: f64) -> std::ops::Range<usize> {
+fn nearest(times: &[f64], time: f64, count: usize) -> std::ops::Range<usize> {
     let at = times.partition_point(|t| *t < time);
-    let first = at.saturating_sub(NEAREST / 2).min(times.len().saturating_sub(NEAREST));
-    first..(first + NEAREST).min(times.len())
+    let first = at.saturating_sub(count / 2).min(times.len().saturating_sub(count));
+    first..(first + count).min(times.len())
 }
 
-/// Value and rate at `time` by a parabola through the nearest samples.
+/// Coefficients about `time` of the parabola through as many of the nearest samples as it fits, and the orientation that rotation vectors
+/// are counted from.
+fn longest_parabola(reading: &Reading, time: f64) -> ([Vec3; 3], Rot) {
+    let mut best = None;
+    let mut count = NEAREST[0];
+    while count <= NEAREST[1] && (best.is_none() || count <= reading.times.len()) {
+        let range = nearest(&reading.times, time, count);
+        let centre = match reading.values[nearest(&reading.times, time, 1).start] {
+            Value::Rotation(q) => q,
+            Value::Vector(_) => Rot::identity(),
+        };
+        let value = |i: usize| match reading.values[i] {
+            Value::Vector(v) => v,
+            Value::Rotation(q) => log_rotation(&(q * centre.inverse())),
+        };
+        let times = &reading.times[range.clone()];
+        let Some(c) = parabola(times, range.clone().map(value), time) else {
+            let sum = range.clone().map(value).fold(Vec3::zeros(), |sum, v| sum + v);
+            return best.unwrap_or(([sum / range.len().max(1) as f64, Vec3::zeros(), Vec3::zeros()], centre));
+        };
+        let miss = |i: usize| {
+            let x = reading.times[i] - time;
+            (value(i) - c[0] - c[1] * x - c[2] * (x * x)).norm_squared() / reading.sigma.powi(2)
+        };
+        let scalars = (reading.width() * range.len()) as f64;
+        let fits = range.clone().map(miss).sum::<f64>() < scalars + FITTING * (2.0 * scalars).sqrt();
+        if !fits && best.is_some() {
+            break;
+        }
+        best = Some((c, centre));
+        count *= 2;
+    }
+    best.unwrap_or(([Vec3::zeros(); 3], Rot::identity()))
+}
+
+/// Value and rate at `time`.
 fn fit_vector(reading: &Reading, time: f64) -> (Vec3, Vec3) {
-    let range = nearest(&reading.times, time);
-    let value = |i: usize| if let Value::Vector(v) = reading.values[i] { v } else { Vec3::zeros() };
-    fit(&reading.times[range.clone()], range.map(value), time)
+    let ([value, rate, _], _) = longest_parabola(reading, time);
+    (value, rate)
 }
 
 fn fit_rotation(reading: &Reading, time: f64) -> (Rot, Vec3) {
-    let range = nearest(&reading.times, time);
-    let rotation = |i: usize| if let Value::Rotation(q) = reading.values[i] { q } else { Rot::identity() };
-    let centre = rotation(range.start + range.len() / 2);
-    let turned = range.clone().map(|i| log_rotation(&(rotation(i) * centre.inverse())));
-    let (phi, rate) = fit(&reading.times[range.clone()], turned, time);
+    let ([phi, rate, _], centre) = longest_parabola(reading, time);
     (exp_rotation(&phi) * centre, rate)
-}
-
-fn fit(times: &[f64], values: impl Iterator<Item = Vec3> + Clone, time: f64) -> (Vec3, Vec3) {
-    match parabola(times, values.clone(), time) {
-        Some([value, rate, _]) => (value, rate),
-        None => (values.fold(Vec3::zeros(), |sum, v| sum + v) / times.len().max(1) as f64, Vec3::zeros()),
-    }
 }
 
 /// Coefficients of the parabola through some samples, about `time`; `None` of too few.

@@ -19,7 +19,7 @@ use crate::locate::{Located, locate, places};
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::{Pace, Span};
-use crate::search::{Attempt, DIVERGED, Limits, Standing, follow, is_significant, search};
+use crate::search::{Attempt, Limits, Standing, follow, is_significant, search};
 use crate::tape::Tape;
 use crate::tell;
 use crate::work::{Watch, Work};
@@ -77,11 +77,20 @@ pub fn diagnose(
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
     clock.stage("search", 0.25);
-    let whole = follow(&stage, &plant, EffectSet::default(), &joined(&nominal.segments, &thinned))?;
+    // Longer and longer stretches lead to the starts of whole runs; where windows are far off already, they lead nowhere.
     let mut some = representative(&stage, &nominal);
-    if whole.rms() < DIVERGED {
-        some = with_thirds(&stage, &plant, some, &thinned)?;
+    let mut first = joined(&nominal.segments, &thinned);
+    if nominal.rms() < FAR {
+        let thirds = thirds(&stage, &plant, &nominal.built, &thinned)?;
+        first = joined(&thirds.segments, &thinned);
+        some = together(some, thirds);
     }
+    let whole = follow(&stage, &plant, EffectSet::default(), &first)?;
+    watch.step(&format!(
+        "the nominal model: error {:.3} in windows, {:.3} over whole runs",
+        nominal.rms(),
+        whole.rms()
+    ));
     let standing = Standing::new(&stage, some, whole)?;
     let candidates = |stage: &Stage<'_>, now: &Fit| {
         let facts = Facts::new(&now.built, &tapes);
@@ -221,19 +230,25 @@ fn representative(stage: &Stage<'_>, fit: &Fit) -> Fit {
     Fit { segments, cost, count, freedom, ..fit.clone() }
 }
 
-/// Windows and thirds of runs: what is slow shows in these, also where an event later in the run hides it.
-fn with_thirds(stage: &Stage<'_>, plant: &Plant, windows: Fit, tapes: &[Tape]) -> Result<Fit, DiagnoseError> {
+/// Thirds of the runs: what is slow shows in these, also where an event later in the run hides it.
+fn thirds(stage: &Stage<'_>, plant: &Plant, built: &Built, tapes: &[Tape]) -> Result<Fit, DiagnoseError> {
     let third = tapes.iter().map(|t| (t.span.1 - t.span.0) / 3.0).fold(0.0, f64::max);
-    let segments = cut(&windows.built, tapes, Some(third), |t| t.role == Role::Fit);
-    let thirds = fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)?;
-    Ok(Fit {
-        segments: [windows.segments, thirds.segments].concat(),
-        cost: windows.cost + thirds.cost,
-        count: windows.count + thirds.count,
-        freedom: windows.freedom + thirds.freedom,
-        ..windows
-    })
+    let segments = cut(built, tapes, Some(third), |t| t.role == Role::Fit);
+    fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)
 }
+
+fn together(a: Fit, b: Fit) -> Fit {
+    Fit {
+        segments: [a.segments, b.segments].concat(),
+        cost: a.cost + b.cost,
+        count: a.count + b.count,
+        freedom: a.freedom + b.freedom,
+        ..a
+    }
+}
+
+/// Root mean square in windows beyond which longer stretches are not worth a look.
+const FAR: f64 = 30.0;
 
 /// Windows of either kind.
 const SPOKESMEN: std::ops::RangeInclusive<usize> = 4..=12;

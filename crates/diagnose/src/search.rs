@@ -159,7 +159,7 @@ pub fn follow_with(
 /// Root mean square over whole runs from the starts of windows beyond which no start makes them follow.
 const HOPELESS: f64 = 3000.0;
 /// Root mean square over whole runs beyond which they do not follow the model at all, and windows judge.
-pub(crate) const DIVERGED: f64 = 300.0;
+const DIVERGED: f64 = 300.0;
 /// Root mean square over whole runs up to which a screen over them says something.
 const LINEAR: f64 = 60.0;
 /// Share of the remaining excess that an effect must take away.
@@ -369,6 +369,7 @@ impl Attempt {
 
     fn tell(&mut self, before: &Fit, after: &Fit) {
         self.fall = Some(before.cost - after.cost);
+        self.share = ((before.cost - after.cost) / before.excess().max(0.2 * before.count as f64)).clamp(0.0, 1.0);
         self.gain = Some(criterion(before) - criterion(after));
         self.found = after.set.members.last().map(|m| m.1.clone()).unwrap_or_default();
     }
