@@ -135,8 +135,15 @@ fn located(findings: &Findings, stage: &Stage<'_>) -> Vec<LocatedPlace> {
         Verdict::NoMismatch => Vec::new(),
         Verdict::Unknown => by_force().into_iter().map(|(n, s)| place(n.clone(), s, condition_of(&n))).collect(),
         _ => {
-            let kept = findings.attempts.iter().filter(|a| a.kept);
-            kept.map(|a| place(a.place.clone(), a.share.clamp(0.0, 1.0), condition_of(&a.place))).collect()
+            // Two effects at one place are one place.
+            let mut shares: Vec<(String, f64)> = Vec::new();
+            for attempt in findings.attempts.iter().filter(|a| a.kept) {
+                match shares.iter_mut().find(|s| s.0 == attempt.place) {
+                    Some(known) => known.1 = known.1.max(attempt.share),
+                    None => shares.push((attempt.place.clone(), attempt.share)),
+                }
+            }
+            shares.into_iter().map(|(p, share)| place(p.clone(), share.clamp(0.0, 1.0), condition_of(&p))).collect()
         }
     }
 }
