@@ -111,14 +111,14 @@ fn nearest(times: &[f64], time: f64, count: usize) -> std::ops::Range<usize> {
 /// Coefficients about `time` of the parabola through as many of the nearest samples as it fits, and the orientation that rotation vectors
 /// are counted from.
 fn longest_parabola(reading: &Reading, time: f64) -> ([Vec3; 3], Rot) {
+    let centre = match reading.values[nearest(&reading.times, time, 1).start] {
+        Value::Rotation(q) => q,
+        Value::Vector(_) => Rot::identity(),
+    };
     let mut best = None;
     let mut count = NEAREST[0];
     while count <= NEAREST[1] && (best.is_none() || count <= reading.times.len()) {
         let range = nearest(&reading.times, time, count);
-        let centre = match reading.values[nearest(&reading.times, time, 1).start] {
-            Value::Rotation(q) => q,
-            Value::Vector(_) => Rot::identity(),
-        };
         let value = |i: usize| match reading.values[i] {
             Value::Vector(v) => v,
             Value::Rotation(q) => log_rotation(&(q * centre.inverse())),
@@ -126,7 +126,7 @@ fn longest_parabola(reading: &Reading, time: f64) -> ([Vec3; 3], Rot) {
         let times = &reading.times[range.clone()];
         let Some(c) = parabola(times, range.clone().map(value), time) else {
             let sum = range.clone().map(value).fold(Vec3::zeros(), |sum, v| sum + v);
-            return best.unwrap_or(([sum / range.len().max(1) as f64, Vec3::zeros(), Vec3::zeros()], centre));
+            return (best.unwrap_or([sum / range.len().max(1) as f64, Vec3::zeros(), Vec3::zeros()]), centre);
         };
         let miss = |i: usize| {
             let x = reading.times[i] - time;
@@ -137,10 +137,10 @@ fn longest_parabola(reading: &Reading, time: f64) -> ([Vec3; 3], Rot) {
         if !fits && best.is_some() {
             break;
         }
-        best = Some((c, centre));
+        best = Some(c);
         count *= 2;
     }
-    best.unwrap_or(([Vec3::zeros(); 3], Rot::identity()))
+    (best.unwrap_or([Vec3::zeros(); 3]), centre)
 }
 
 /// Value and rate at `time`.

@@ -240,7 +240,8 @@ impl Stage<'_> {
     }
 }
 
-fn finite(cost: f64) -> f64 {
+/// A cost that no number can hold is beyond all others.
+pub(crate) fn finite(cost: f64) -> f64 {
     if cost.is_nan() { f64::INFINITY } else { cost }
 }
 

@@ -91,7 +91,7 @@ pub fn diagnose(
         nominal.rms(),
         whole.rms()
     ));
-    let standing = Standing::new(&stage, some, whole)?;
+    let standing = Standing::new(&stage, some, whole);
     let candidates = |stage: &Stage<'_>, now: &Fit| {
         let facts = Facts::new(&now.built, &tapes);
         let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();

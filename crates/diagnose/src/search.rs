@@ -26,7 +26,7 @@ pub struct Attempt {
     pub place: String,
     /// Promised fall of the cost.
     pub score: f64,
-    /// Share of the excess that it promises.
+    /// Share of the excess that it promises, or has brought where it was refitted.
     pub share: f64,
     /// Fall of the cost after the refit; `None` where none was made.
     pub fall: Option<f64>,
@@ -85,9 +85,9 @@ pub struct Standing {
 
 impl Standing {
     /// One set at both lengths.
-    pub fn new(stage: &Stage<'_>, windows: Fit, whole: Fit) -> Result<Self, DiagnoseError> {
+    pub fn new(stage: &Stage<'_>, windows: Fit, whole: Fit) -> Self {
         let standing = Self { windows, whole };
-        Ok(if standing.follows() { standing.weighted(stage) } else { standing })
+        if standing.follows() { standing.weighted(stage) } else { standing }
     }
 
     /// Where whole runs judge, windows are only there to begin from: none of them counts for more than all that is in it.
@@ -114,16 +114,14 @@ impl Standing {
 
     /// The same with another set, its parameters fitted at the length that judges.
     fn refit(&self, stage: &Stage<'_>, plant: &Plant, set: EffectSet, effort: Effort) -> Result<Self, DiagnoseError> {
-        let fixed = set.frozen();
         if self.follows() {
             let whole = fit(stage, plant, set, self.whole.segments.clone(), effort)?;
             let windows = fit(stage, plant, whole.set.frozen(), self.windows.segments.clone(), Effort::STARTS)?;
             let windows = Fit { set: whole.set.clone(), ..windows };
             return Ok(Self { windows, whole }.weighted(stage));
         }
-        let windows = fit(stage, plant, set.clone(), self.windows.segments.clone(), effort)?;
-        let now = if set.slots().is_empty() { fixed } else { windows.set.frozen() };
-        let whole = follow(stage, plant, now, &self.whole.segments)?;
+        let windows = fit(stage, plant, set, self.windows.segments.clone(), effort)?;
+        let whole = follow(stage, plant, windows.set.frozen(), &self.whole.segments)?;
         let whole = Fit { set: windows.set.clone(), ..whole };
         let standing = Self { windows, whole };
         // They begin to follow: from now on they judge.
@@ -177,7 +175,7 @@ const NEARLY: f64 = 0.6;
 
 /// Adds and removes effects until nothing significant is left or nothing helps.
 ///
-/// Returns the pace at which the last set was fitted: what an effect brings may need finer steps than the nominal model does.
+/// `stage` is left at the pace at which the last set was fitted: what an effect brings may need finer steps than the nominal model does.
 pub fn search(
     stage: &mut Stage<'_>,
     plant: &Plant,

@@ -5,7 +5,7 @@
 //! A segment whose events do not yet follow the model stays behind without holding up the others.
 
 use crate::fit::Effort;
-use crate::linear::{Segment, SegmentLinear, Stage, StartColumns, eliminate};
+use crate::linear::{Segment, SegmentLinear, Stage, StartColumns, eliminate, finite};
 use crate::plant::Built;
 use crate::replay::starts_along;
 use crate::start::{Start, freedoms};
@@ -69,37 +69,39 @@ impl Stage<'_> {
         sizes: &[f64],
         (iterations, share): (usize, f64),
     ) -> (Settled, Vec<f64>) {
-        let (mut segment, mut r) = self.nearer(built, segment);
+        let (segment, mut r) = self.nearer(built, segment);
         let all = freedoms(built, &segment.start);
         let mut sizes: Vec<f64> =
             if sizes.len() == all.len() { sizes.to_vec() } else { all.iter().map(|f| f.first_step()).collect() };
-        let mut now = (finite(r.norm_squared()), 0, 0, false);
-        let mut damping = 0.0;
         // What is as near as noise lets it be needs no derivatives.
         let noise = r.len() as f64 + (2.0 * r.len() as f64).sqrt();
-        now.3 = share >= Effort::JUDGED.share && now.0 < noise;
-        while now.2 < iterations && !now.3 {
-            let (columns, used) = self.quotients(built, &segment, &r, (&all, &sizes)).into_iter().unzip();
+        let cost = finite(r.norm_squared());
+        let converged = share >= Effort::JUDGED.share && cost < noise;
+        let mut now = Settled { segment, cost, shown: 0, iterations: 0, converged };
+        let mut damping = 0.0;
+        while now.iterations < iterations && !now.converged {
+            let (columns, used): (Vec<DVector<f64>>, Vec<f64>) =
+                self.quotients(built, &now.segment, &r, (&all, &sizes)).into_iter().unzip();
             sizes = used;
-            let columns: Vec<DVector<f64>> = columns;
-            now.2 += 1;
-            let shown = columns.iter().filter(|c| c.norm_squared() > 0.0).count();
+            now.iterations += 1;
+            now.shown = columns.iter().filter(|c| c.norm_squared() > 0.0).count();
             let linear = eliminate(&columns.iter().collect::<Vec<_>>(), &[&r], &all);
-            segment.columns = Some(Arc::new(StartColumns { freedoms: all.clone(), columns }));
-            now.1 = shown;
-            let excess = (now.0 - r.len() as f64).max(0.0);
-            let promised = now.0 - linear.reduced[(0, 0)];
-            if promised.is_nan() || promised < NEXT_TO_NOTHING.max(share * excess) {
-                now.3 = true;
+            now.segment.columns = Some(Arc::new(StartColumns { freedoms: all.clone(), columns }));
+            let enough = NEXT_TO_NOTHING.max(share * (now.cost - r.len() as f64).max(0.0));
+            let promised = now.cost - linear.reduced[(0, 0)];
+            if promised.is_nan() || promised < enough {
+                now.converged = true;
                 break;
             }
-            let Some((moved, after, used)) = self.downhill(built, &segment, &linear, (now.0, damping)) else { break };
+            let Some((moved, after, used)) = self.downhill(built, &now.segment, &linear, (now.cost, damping)) else {
+                break;
+            };
             damping = used;
-            now.3 = now.0 - after.norm_squared() < NEXT_TO_NOTHING.max(share * excess);
-            (segment, now.0, r) = (moved, finite(after.norm_squared()), after);
+            let cost = finite(after.norm_squared());
+            now.converged = now.cost - cost < enough;
+            (now.segment, now.cost, r) = (moved, cost, after);
         }
-        let (cost, shown, iterations, converged) = now;
-        (Settled { segment, cost, shown, iterations, converged }, sizes)
+        (now, sizes)
     }
 
     /// The first step that lowers the cost: the full one, then more and more damped ones.
@@ -182,8 +184,4 @@ impl Stage<'_> {
         let (segments, costs): (Vec<Segment>, Vec<f64>) = segments.par_iter().zip(linear.par_iter()).map(of).unzip();
         (segments, costs.iter().sum())
     }
-}
-
-fn finite(cost: f64) -> f64 {
-    if cost.is_nan() { f64::INFINITY } else { cost }
 }

@@ -161,7 +161,8 @@ impl World {
                 self.ws.before.copy_from(&self.state);
             }
             self.make_step()?;
-            if turning <= 0.0 && may_turn && effect::has_turned(&self.model, &self.ws.before, &self.state) {
+            let is_long = turning <= 0.0 && part > effect::longest_turn(h);
+            if is_long && may_turn && effect::has_turned(&self.model, &self.ws.before, &self.state) {
                 self.state.copy_from(&self.ws.before);
                 self.is_fresh = false;
                 self.refresh();
