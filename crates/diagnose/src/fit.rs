@@ -83,6 +83,8 @@ pub struct Fit {
     pub cost: f64,
     /// Scalars in it.
     pub count: usize,
+    /// What noise alone would make of the cost, starts and set given: the scalars by the weights of their segments.
+    pub noise: f64,
     /// Free numbers: of the starts and of the set.
     pub freedom: usize,
     /// Inverse of A over the fitted slots.
@@ -96,17 +98,17 @@ pub struct Fit {
 impl Fit {
     /// Cost above what noise alone would leave.
     pub fn excess(&self) -> f64 {
-        self.cost - (self.count as f64 - self.freedom as f64)
+        self.cost - self.noise * (1.0 - self.freedom as f64 / self.count.max(1) as f64)
     }
 
     /// Standard deviation of the cost under noise alone.
     pub fn spread(&self) -> f64 {
-        (2.0 * self.count as f64).sqrt()
+        (2.0 * self.noise).sqrt()
     }
 
     /// Root mean square of the residual, 1 for a perfect model.
     pub fn rms(&self) -> f64 {
-        (self.cost / self.count.max(1) as f64).sqrt()
+        (self.cost / self.noise.max(f64::MIN_POSITIVE)).sqrt()
     }
 }
 
@@ -146,7 +148,7 @@ pub fn fit(
         return Ok(fit_starts(stage, set, built, &segments, effort));
     }
     let (segments, cost) = stage.settle(&built, &segments);
-    let count = segments.iter().map(|s| stage.count(s)).sum();
+    let (count, noise) = stage.noise(&segments);
     let mut now = Fit {
         freedom: set.slots().len(),
         set,
@@ -154,6 +156,7 @@ pub fn fit(
         segments,
         cost,
         count,
+        noise,
         covariance: DMatrix::zeros(0, 0),
         converged: false,
         iterations: 0,
@@ -170,11 +173,13 @@ pub fn fit(
 /// The starts alone.
 fn fit_starts(stage: &Stage<'_>, set: EffectSet, built: Built, segments: &[Segment], effort: Effort) -> Fit {
     let settled = stage.fit_starts(&built, segments, (effort.iterations, effort.share));
+    let (count, noise) = stage.noise(segments);
     Fit {
         set,
         built,
         cost: settled.iter().map(|s| s.cost).sum(),
-        count: segments.iter().map(|s| stage.count(s)).sum(),
+        count,
+        noise,
         freedom: settled.iter().map(|s| s.shown).sum(),
         covariance: DMatrix::zeros(0, 0),
         converged: settled.iter().all(|s| s.converged),

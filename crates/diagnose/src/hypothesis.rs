@@ -145,9 +145,9 @@ impl Hypothesis {
         format!("{} at {}", self.name, self.place)
     }
 
-    /// Whether the cost has a valley for each frequency, and one refit may end in the wrong one.
+    /// Whether the cost has a valley for each frequency, or a long flat one along a speed, and one refit may end in the wrong place.
     pub fn has_valleys(&self) -> bool {
-        matches!(self.name, "slosh" | "flexible-appendage")
+        matches!(self.name, "slosh" | "flexible-appendage" | "friction-stribeck" | "joint-stribeck-friction")
     }
 
     /// Neutral or typical coordinates.

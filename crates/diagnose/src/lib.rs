@@ -32,6 +32,7 @@ pub mod screen;
 pub mod search;
 mod settle;
 pub mod start;
+mod stretches;
 mod summary;
 pub mod tape;
 mod tell;

@@ -126,16 +126,16 @@ impl Stage<'_> {
         tape.offsets[range.end] - tape.offsets[range.start]
     }
 
-    /// Squared norm of all residuals, and how many there are.
-    pub fn cost(&self, built: &Built, segments: &[Segment]) -> (f64, usize) {
-        let parts: Vec<(f64, usize)> = segments
-            .par_iter()
-            .map(|s| {
-                let r = self.residuals(built, s);
-                (finite(r.norm_squared()), r.len())
-            })
-            .collect();
-        parts.iter().fold((0.0, 0), |sum, p| (sum.0 + p.0, sum.1 + p.1))
+    /// Scalars in the residuals of some segments, and their squared norm if they were noise alone.
+    pub fn noise(&self, segments: &[Segment]) -> (usize, f64) {
+        let counts = segments.iter().map(|s| (self.count(s), s.weight));
+        counts.fold((0, 0.0), |sum, (count, weight)| (sum.0 + count, sum.1 + weight * count as f64))
+    }
+
+    /// Squared norm of all residuals.
+    pub fn cost(&self, built: &Built, segments: &[Segment]) -> f64 {
+        let parts: Vec<f64> = segments.par_iter().map(|s| finite(self.residuals(built, s).norm_squared())).collect();
+        parts.iter().sum()
     }
 
     /// Linearises every segment about its start, with a column for each variation.

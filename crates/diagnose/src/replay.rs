@@ -86,6 +86,22 @@ pub fn starts_along(
     instants.iter().map(at).collect()
 }
 
+/// When anything touches in a replay: stretches that begin and end at instants of the tape's events; as far as the replay goes.
+pub fn touches_in(built: &Built, tape: &Tape, start: &Start, span: Span, pace: Pace) -> Vec<Span> {
+    let mut replay = Replay::new(built, tape, start, span.from, pace);
+    let (mut all, mut from): (Vec<Span>, f64) = (Vec::new(), span.from);
+    for event in &tape.events[tape.range(span)] {
+        let Ok(has_touched) = replay.advance_to(event.time) else { break };
+        match all.last_mut().filter(|last| last.to >= from) {
+            Some(last) if has_touched => last.to = event.time,
+            None if has_touched => all.push(Span { from, to: event.time }),
+            _ => {}
+        }
+        from = event.time;
+    }
+    all
+}
+
 /// A world that runs through a tape.
 struct Replay<'a> {
     tape: &'a Tape,
@@ -104,15 +120,16 @@ impl<'a> Replay<'a> {
         Self { tape, world, feed, pace }
     }
 
-    /// Advances to an instant, commands changed at their ticks.
-    fn advance_to(&mut self, time: f64) -> Result<(), DiagnoseError> {
+    /// Advances to an instant, commands changed at their ticks; whether anything touched on the way.
+    fn advance_to(&mut self, time: f64) -> Result<bool, DiagnoseError> {
         let Self { tape, world, feed, pace } = self;
+        let mut has_touched = false;
         while feed.next_tick(tape) < time - SAME {
-            advance_to(world, feed.next_tick(tape), *pace).map_err(|what| gone(tape, what))?;
+            has_touched |= advance_to(world, feed.next_tick(tape), *pace).map_err(|what| gone(tape, what))?;
             feed.turn(tape, world.state().time);
             feed.apply(world);
         }
-        advance_to(world, time, *pace).map_err(|what| gone(tape, what))
+        Ok(has_touched | advance_to(world, time, *pace).map_err(|what| gone(tape, what))?)
     }
 }
 
@@ -135,8 +152,8 @@ fn gone(tape: &Tape, error: sim::StepError) -> DiagnoseError {
     DiagnoseError::Replay { file: tape.file.clone(), what: error.to_string() }
 }
 
-/// Advances to an instant in equal steps not longer than the pace: long ones as long as nothing touches.
-fn advance_to(world: &mut World, time: f64, pace: Pace) -> Result<(), sim::StepError> {
+/// Advances to an instant in equal steps not longer than the pace, long ones as long as nothing touches; whether anything touched.
+fn advance_to(world: &mut World, time: f64, pace: Pace) -> Result<bool, sim::StepError> {
     let parts = |left: f64, longest: f64| (left / longest - 1e-6).ceil().max(1.0) as u32;
     let mut left = time - world.state().time;
     while left > SAME && pace.free > pace.step {
@@ -147,14 +164,16 @@ fn advance_to(world: &mut World, time: f64, pace: Pace) -> Result<(), sim::StepE
         left = time - world.state().time;
     }
     if left <= SAME {
-        return Ok(());
+        return Ok(false);
     }
     let steps = parts(left, pace.step);
     let h = left / f64::from(steps);
+    let mut has_touched = false;
     for _ in 0..steps {
         world.advance_by(h)?;
+        has_touched |= world.touches().next().is_some();
     }
-    Ok(())
+    Ok(has_touched)
 }
 
 /// The events of a span with their numbers, in the order of the instants they tell of: late sensors read what was.

@@ -11,21 +11,20 @@ use crate::error::DiagnoseError;
 use crate::evidence::{self, Evidence};
 use crate::facts::Facts;
 use crate::fit::{EffectSet, Effort, Fit, fit};
-use crate::guess::guess;
 use crate::hypothesis::Hypothesis;
 use crate::judge::{Judgement, judge};
-use crate::linear::{Segment, Stage, windows};
+use crate::linear::{Segment, Stage};
 use crate::locate::{Located, locate, places};
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
-use crate::replay::{Pace, Span};
+use crate::replay::Pace;
 use crate::search::{Attempt, Limits, Standing, follow, is_significant, search};
+use crate::stretches::{self, Stretches, cut};
 use crate::tape::Tape;
 use crate::tell;
 use crate::work::{Watch, Work};
 use record::{RecordingSet, Role, Severity};
 use scenario::Scenario;
-use std::sync::Arc;
 use std::time::Instant;
 
 /// What the search left to judge and to tell.
@@ -77,21 +76,14 @@ pub fn diagnose(
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
     clock.stage("search", 0.25);
-    // Longer and longer stretches lead to the starts of whole runs; where windows are far off already, they lead nowhere.
-    let mut some = representative(&stage, &nominal);
-    let mut first = joined(&nominal.segments, &thinned);
-    if nominal.rms() < FAR {
-        let thirds = thirds(&stage, &plant, &nominal.built, &thinned)?;
-        first = joined(&thirds.segments, &thinned);
-        some = together(some, thirds);
-    }
-    let whole = follow(&stage, &plant, EffectSet::default(), &first)?;
+    let Stretches { windows, rungs, whole } = stretches::choose(&stage, &plant, &nominal, window)?;
+    let whole = follow(&stage, &plant, EffectSet::default(), &whole)?;
     watch.step(&format!(
         "the nominal model: error {:.3} in windows, {:.3} over whole runs",
         nominal.rms(),
         whole.rms()
     ));
-    let standing = Standing::new(&stage, some, whole);
+    let standing = Standing::new(&stage, windows, whole, rungs);
     let candidates = |stage: &Stage<'_>, now: &Fit| {
         let facts = Facts::new(&now.built, &tapes);
         let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
@@ -188,70 +180,6 @@ fn window_of(rig: &str, tapes: &[Tape]) -> f64 {
         _ => longest / 20.0,
     }
 }
-
-/// Windows of some runs, with guessed starts.
-pub(crate) fn cut(built: &Built, tapes: &[Tape], window: Option<f64>, wanted: impl Fn(&Tape) -> bool) -> Vec<Segment> {
-    let runs = (0..tapes.len()).filter(|r| wanted(&tapes[*r]));
-    let spans = runs.flat_map(|run| windows(&tapes[run], window).into_iter().map(move |span| (run, span)));
-    let segment = |(run, span): (usize, Span)| {
-        let start = guess(built, &tapes[run], span.from);
-        Segment { run, span, guess: Arc::new(start.clone()), start, weight: 1.0, columns: None }
-    };
-    spans.map(segment).collect()
-}
-
-/// Whole runs, from the starts of their first windows.
-pub(crate) fn joined(windows: &[Segment], tapes: &[Tape]) -> Vec<Segment> {
-    let first = windows.iter().filter(|s| s.span.from == tapes[s.run].span.0);
-    first
-        .map(|s| Segment { span: Span { from: s.span.from, to: tapes[s.run].span.1 }, columns: None, ..s.clone() })
-        .collect()
-}
-
-/// Windows that speak for all in a search: those in which most is amiss, and an even selection.
-fn representative(stage: &Stage<'_>, fit: &Fit) -> Fit {
-    let most = (fit.segments.len() / 6).clamp(*SPOKESMEN.start(), *SPOKESMEN.end());
-    if fit.segments.len() <= 2 * most {
-        return fit.clone();
-    }
-    let excess = |s: &Segment| {
-        let r = stage.residuals(&fit.built, s);
-        r.norm_squared() - r.len() as f64
-    };
-    let mut order: Vec<(usize, f64)> = fit.segments.iter().map(excess).enumerate().collect();
-    order.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut chosen: Vec<usize> = order.iter().take(most).map(|o| o.0).collect();
-    chosen.extend((0..most).map(|k| (2 * k + 1) * fit.segments.len() / (2 * most)));
-    chosen.sort_unstable();
-    chosen.dedup();
-    let segments: Vec<Segment> = chosen.iter().map(|i| fit.segments[*i].clone()).collect();
-    let (cost, count) = stage.cost(&fit.built, &segments);
-    let freedom = fit.freedom * segments.len() / fit.segments.len();
-    Fit { segments, cost, count, freedom, ..fit.clone() }
-}
-
-/// Thirds of the runs: what is slow shows in these, also where an event later in the run hides it.
-fn thirds(stage: &Stage<'_>, plant: &Plant, built: &Built, tapes: &[Tape]) -> Result<Fit, DiagnoseError> {
-    let third = tapes.iter().map(|t| (t.span.1 - t.span.0) / 3.0).fold(0.0, f64::max);
-    let segments = cut(built, tapes, Some(third), |t| t.role == Role::Fit);
-    fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)
-}
-
-fn together(a: Fit, b: Fit) -> Fit {
-    Fit {
-        segments: [a.segments, b.segments].concat(),
-        cost: a.cost + b.cost,
-        count: a.count + b.count,
-        freedom: a.freedom + b.freedom,
-        ..a
-    }
-}
-
-/// Root mean square in windows beyond which longer stretches are not worth a look.
-const FAR: f64 = 30.0;
-
-/// Windows of either kind.
-const SPOKESMEN: std::ops::RangeInclusive<usize> = 4..=12;
 
 /// Effects at joints where no force is missing are not looked at: an arm has many places.
 fn promising(located: &Located, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {

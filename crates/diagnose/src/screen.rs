@@ -44,18 +44,20 @@ const WISH: f64 = 0.3;
 const SILENT: f64 = 1e-3;
 /// One in so many segments tunes the steps.
 const PILOTS: usize = 8;
-/// Segments that a screen looks at.
-const SEGMENTS: usize = 24;
+/// A screen looks at so many of the longest segments, or at more of shorter ones.
+const SEGMENTS: f64 = 24.0;
 
 /// Scores every screen point of every hypothesis beside a converged fit; best first.
 ///
 /// Of very many segments an even selection speaks for all.
 pub fn screen(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -> Result<Vec<Score>, DiagnoseError> {
-    let every = fit.segments.len().div_ceil(SEGMENTS).max(1);
-    let whole = fit.segments.len();
+    let lengths = fit.segments.iter().map(|s| s.span.to - s.span.from);
+    let (total, longest) = lengths.fold((0.0, 0.0), |(sum, most): (f64, f64), l| (sum + l, most.max(l)));
+    let every = ((total / (SEGMENTS * longest)).ceil() as usize).max(1);
+    let count = fit.segments.len();
     let thinned =
         Fit { segments: fit.segments.iter().skip(every / 2).step_by(every).cloned().collect(), ..fit.clone() };
-    let share = thinned.segments.len() as f64 / whole.max(1) as f64;
+    let share = thinned.segments.len() as f64 / count.max(1) as f64;
     let mut scores = screen_all(stage, plant, &thinned, all)?;
     scores.iter_mut().for_each(|s| s.score /= share);
     Ok(scores)

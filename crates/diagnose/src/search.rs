@@ -14,6 +14,8 @@ use crate::pace;
 use crate::plant::Plant;
 use crate::replay::Pace;
 use crate::screen::{Score, screen};
+use crate::stretches::STEEP;
+use std::sync::Arc;
 
 /// What happened to one hypothesis in one round.
 #[derive(Clone, Debug)]
@@ -68,7 +70,7 @@ const LEAST: f64 = 0.02;
 
 /// Whether the cost is more than noise leaves.
 pub fn is_significant(fit: &Fit, limits: &Limits) -> bool {
-    fit.excess() > (limits.sigmas * fit.spread()).max(LEAST * fit.count as f64)
+    fit.excess() > (limits.sigmas * fit.spread()).max(LEAST * fit.noise)
 }
 
 /// What could act beside a fitted set.
@@ -81,16 +83,19 @@ pub struct Standing {
     pub windows: Fit,
     /// Over whole runs.
     pub whole: Fit,
+    /// Segments of the lengths between, shortest first; none where windows lead to whole runs at once.
+    pub rungs: Arc<Vec<Vec<Segment>>>,
 }
 
 impl Standing {
     /// One set at both lengths.
-    pub fn new(stage: &Stage<'_>, windows: Fit, whole: Fit) -> Self {
-        let standing = Self { windows, whole };
-        if standing.follows() { standing.weighted(stage) } else { standing }
+    pub fn new(stage: &Stage<'_>, windows: Fit, whole: Fit, rungs: Vec<Vec<Segment>>) -> Self {
+        let standing = Self { windows, whole, rungs: Arc::new(rungs) };
+        let is_weighted = standing.follows() || !standing.rungs.is_empty();
+        if is_weighted { standing.weighted(stage) } else { standing }
     }
 
-    /// Where whole runs judge, windows are only there to begin from: none of them counts for more than all that is in it.
+    /// Where windows are only there to begin from, none of them counts for more than all that is in it.
     fn weighted(mut self, stage: &Stage<'_>) -> Self {
         for segment in &mut self.windows.segments {
             segment.columns = None;
@@ -98,7 +103,8 @@ impl Standing {
             let r = stage.residuals(&self.windows.built, segment);
             segment.weight = (r.len() as f64 / r.norm_squared()).min(1.0);
         }
-        (self.windows.cost, _) = stage.cost(&self.windows.built, &self.windows.segments);
+        self.windows.cost = stage.cost(&self.windows.built, &self.windows.segments);
+        (self.windows.count, self.windows.noise) = stage.noise(&self.windows.segments);
         self
     }
 
@@ -109,7 +115,22 @@ impl Standing {
 
     /// Whether whole runs follow the model far enough to be judged by.
     pub fn follows(&self) -> bool {
-        self.whole.rms() < DIVERGED
+        self.whole.rms() < if self.rungs.is_empty() { DIVERGED } else { STEEP }
+    }
+
+    /// The set of a fit in windows, fitted to longer and longer ones as far as these follow it; and whole runs under it.
+    fn climb(&self, stage: &Stage<'_>, plant: &Plant, mut set: EffectSet) -> Result<(EffectSet, Fit), DiagnoseError> {
+        for rung in self.rungs.iter() {
+            let settled = fit(stage, plant, set.frozen(), rung.clone(), Effort::STARTS)?;
+            let tried = fit(stage, plant, set.clone(), settled.segments, LOOK)?;
+            stage.work.watch.step(&format!("  windows of {:.3} s: error {:.3}", length_of(rung), tried.rms()));
+            if tried.rms() > STEEP {
+                break;
+            }
+            set = tried.set;
+        }
+        let whole = follow(stage, plant, set.frozen(), &self.whole.segments)?;
+        Ok((set.clone(), Fit { set, ..whole }))
     }
 
     /// The same with another set, its parameters fitted at the length that judges.
@@ -118,18 +139,24 @@ impl Standing {
             let whole = fit(stage, plant, set, self.whole.segments.clone(), effort)?;
             let windows = fit(stage, plant, whole.set.frozen(), self.windows.segments.clone(), Effort::STARTS)?;
             let windows = Fit { set: whole.set.clone(), ..windows };
-            return Ok(Self { windows, whole }.weighted(stage));
+            return Ok(Self { windows, whole, rungs: Arc::clone(&self.rungs) }.weighted(stage));
         }
         let windows = fit(stage, plant, set, self.windows.segments.clone(), effort)?;
-        let whole = follow(stage, plant, windows.set.frozen(), &self.whole.segments)?;
-        let whole = Fit { set: windows.set.clone(), ..whole };
-        let standing = Self { windows, whole };
+        self.lengthened(stage, plant, windows, effort)
+    }
+
+    /// The standing of a set that was fitted in windows.
+    fn lengthened(
+        &self,
+        stage: &Stage<'_>,
+        plant: &Plant,
+        windows: Fit,
+        effort: Effort,
+    ) -> Result<Self, DiagnoseError> {
+        let (set, whole) = self.climb(stage, plant, windows.set.clone())?;
+        let standing = Self { windows, whole, rungs: Arc::clone(&self.rungs) };
         // They begin to follow: from now on they judge.
-        if standing.follows() {
-            standing.refit(stage, plant, standing.windows.set.clone(), effort)
-        } else {
-            Ok(standing)
-        }
+        if standing.follows() { standing.refit(stage, plant, set, effort) } else { Ok(standing) }
     }
 }
 
@@ -152,6 +179,10 @@ pub fn follow_with(
         return Ok(Fit { segments: segments.to_vec(), ..first });
     }
     fit(stage, plant, first.set, first.segments, effort)
+}
+
+fn length_of(segments: &[Segment]) -> f64 {
+    segments.first().map_or(0.0, |s| s.span.to - s.span.from)
 }
 
 /// Root mean square over whole runs from the starts of windows beyond which no start makes them follow.
@@ -217,6 +248,9 @@ pub fn search(
         now = best.refit(stage, plant, set, WHOLE)?;
         stage.work.watch.step(&format!("kept {added}: {}", errors(&now)));
         now = simplify(stage, plant, now, &all)?;
+        if !now.rungs.is_empty() && !now.follows() {
+            now = now.weighted(stage);
+        }
         round += 1;
     }
     Ok((prune(stage, plant, now)?, attempts))
@@ -265,7 +299,8 @@ fn refit_best(
         let here = if is_window { &now.windows } else { &now.whole };
         // What is found in windows and explains whole runs needs no screen over these.
         let is_done = best.as_ref().is_some_and(|b| is_enough(now, b, limits));
-        if !is_window && (is_done || here.rms() > LINEAR) {
+        let is_far = here.rms() > LINEAR || !now.rungs.is_empty() && !now.follows();
+        if !is_window && (is_done || is_far) {
             break;
         }
         let ready = refit_promising(stage, plant, here, &all, (limits, round), &mut attempts)?;
@@ -279,11 +314,9 @@ fn refit_best(
                 continue;
             }
             let standing = if is_window {
-                let (set, whole) = (tried.set.clone(), follow(stage, plant, tried.set.frozen(), &now.whole.segments)?);
-                let standing = Standing { windows: tried, whole: Fit { set: set.clone(), ..whole } };
-                if standing.follows() { standing.refit(stage, plant, set, LOOK)? } else { standing }
+                now.lengthened(stage, plant, tried, LOOK)?
             } else {
-                Standing { windows: now.windows.clone(), whole: tried }
+                Standing { windows: now.windows.clone(), whole: tried, rungs: Arc::clone(&now.rungs) }
             };
             let name = format!("{} at {}", attempts[at].name, attempts[at].place);
             stage.work.watch.step(&format!("{name}: {}", errors(&standing)));
@@ -338,7 +371,8 @@ fn refit_promising(
         }
         let Some(start) = possible(stage, plant, here, h, &score.start) else { continue };
         let Ok(tried) = fit(stage, plant, here.set.with(h, &start), here.segments.clone(), LOOK) else { continue };
-        stage.work.watch.step(&format!("refit {}: error {:.3} → {:.3}", h.title(), here.rms(), tried.rms()));
+        let found = tried.set.members.last().map(|(h, x)| told(h, x)).unwrap_or_default();
+        stage.work.watch.step(&format!("refit {} {found}: error {:.3} → {:.3}", h.title(), here.rms(), tried.rms()));
         if attempts[at].fall.is_none_or(|fall| here.cost - tried.cost > fall) {
             attempts[at].tell(here, &tried);
         }
@@ -346,7 +380,21 @@ fn refit_promising(
             ready.push((at, tried));
         }
     }
+    // Of several starts of one hypothesis the best end counts.
+    ready.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    let mut seen = Vec::new();
+    ready.retain(|r| {
+        !seen.contains(&r.0) && {
+            seen.push(r.0);
+            true
+        }
+    });
     Ok(ready)
+}
+
+/// Parameters in a line.
+fn told(h: &Hypothesis, x: &[f64]) -> String {
+    h.decode(x).iter().map(|(key, value)| format!("{key} {value:.4e}")).collect::<Vec<_>>().join(", ")
 }
 
 impl Attempt {
@@ -356,7 +404,7 @@ impl Attempt {
             name: h.name.to_owned(),
             place: h.place.clone(),
             score: score.score,
-            share: score.score / beside.excess().max(0.2 * beside.count as f64),
+            share: score.score / beside.excess().max(0.2 * beside.noise),
             fall: None,
             parameters: score.rank,
             gain: None,
@@ -367,7 +415,7 @@ impl Attempt {
 
     fn tell(&mut self, before: &Fit, after: &Fit) {
         self.fall = Some(before.cost - after.cost);
-        self.share = ((before.cost - after.cost) / before.excess().max(0.2 * before.count as f64)).clamp(0.0, 1.0);
+        self.share = ((before.cost - after.cost) / before.excess().max(0.2 * before.noise)).clamp(0.0, 1.0);
         self.gain = Some(criterion(before) - criterion(after));
         self.found = after.set.members.last().map(|m| m.1.clone()).unwrap_or_default();
     }

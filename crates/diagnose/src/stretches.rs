@@ -1,0 +1,165 @@
+//! The stretches of a recording that a search looks at beside whole runs.
+//!
+//! Windows are shortened until the nominal model follows them, for a screen is linear; those in which most is amiss and an even selection of
+//! the others speak for all. What is slow shows in long stretches only: flights between touches, which no event cuts, or thirds of runs.
+
+use crate::error::DiagnoseError;
+use crate::fit::{EffectSet, Effort, Fit, fit};
+use crate::guess::guess;
+use crate::linear::{Segment, Stage, windows};
+use crate::plant::{Built, Plant};
+use crate::replay::{Span, touches_in};
+use crate::tape::Tape;
+use rayon::prelude::*;
+use record::Role;
+use std::sync::Arc;
+
+/// Root mean square in windows beyond which shorter ones are looked at.
+pub(crate) const STEEP: f64 = 8.0;
+/// A shorter window's share of the last.
+const SHORTER: f64 = 0.25;
+/// Samples of the sparsest reading that a window has at least.
+const SAMPLES: f64 = 12.0;
+/// Root mean square in windows beyond which longer stretches are not worth a look.
+const FAR: f64 = 30.0;
+/// Windows of either kind, in all of the length in which predictions are judged.
+const SPOKESMEN: std::ops::RangeInclusive<usize> = 4..=12;
+
+/// Windows of some runs, with guessed starts.
+pub(crate) fn cut(built: &Built, tapes: &[Tape], window: Option<f64>, wanted: impl Fn(&Tape) -> bool) -> Vec<Segment> {
+    let runs = (0..tapes.len()).filter(|r| wanted(&tapes[*r]));
+    let spans = runs.flat_map(|run| windows(&tapes[run], window).into_iter().map(move |span| (run, span)));
+    let all: Vec<(usize, Span)> = spans.collect();
+    all.par_iter().map(|(run, span)| guessed(built, tapes, *run, *span)).collect()
+}
+
+fn guessed(built: &Built, tapes: &[Tape], run: usize, span: Span) -> Segment {
+    let start = guess(built, &tapes[run], span.from);
+    Segment { run, span, guess: Arc::new(start.clone()), start, weight: 1.0, columns: None }
+}
+
+/// Whole runs, from the starts of their first windows.
+pub(crate) fn joined(windows: &[Segment], tapes: &[Tape]) -> Vec<Segment> {
+    let first = windows.iter().filter(|s| s.span.from == tapes[s.run].span.0);
+    first
+        .map(|s| Segment { span: Span { from: s.span.from, to: tapes[s.run].span.1 }, columns: None, ..s.clone() })
+        .collect()
+}
+
+/// What a search looks at.
+pub(crate) struct Stretches {
+    /// The shortest windows, and long stretches where these are near enough, fitted by the nominal model.
+    pub windows: Fit,
+    /// Where windows had to be shortened, those of the lengths between them and whole runs, shortest first.
+    pub rungs: Vec<Vec<Segment>>,
+    /// Whole runs, from the best starts that are known.
+    pub whole: Vec<Segment>,
+}
+
+/// Chooses from the nominal model's windows of the length in which predictions are judged.
+pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f64) -> Result<Stretches, DiagnoseError> {
+    let mut some = nominal.clone();
+    let (mut length, mut many) = (window, 1.0);
+    let mut rungs = Vec::new();
+    while some.rms() > STEEP && SHORTER * length > shortest(stage.tapes) {
+        rungs.insert(0, representative(stage, &some, many).segments);
+        (length, many) = (length * SHORTER, many / SHORTER);
+        let segments = cut(&nominal.built, stage.tapes, Some(length), |t| t.role == Role::Fit);
+        some = fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)?;
+        stage.work.watch.step(&format!("windows of {length:.3} s: error {:.3}", some.rms()));
+    }
+    some = representative(stage, &some, many);
+    let mut first = joined(&nominal.segments, stage.tapes);
+    let flights = flights(stage, nominal);
+    if !flights.is_empty() || rungs.is_empty() && nominal.rms() < FAR {
+        let long = long(stage, plant, nominal, flights)?;
+        let begins = |s: &&Segment| s.span.from == stage.tapes[s.run].span.0;
+        for begun in joined(&long.segments.iter().filter(begins).cloned().collect::<Vec<_>>(), stage.tapes) {
+            first.iter_mut().filter(|s| s.run == begun.run).for_each(|s| s.clone_from(&begun));
+        }
+        some = together(some, long);
+    }
+    Ok(Stretches { windows: some, rungs, whole: first })
+}
+
+/// The shortest window that the sparsest reading fills.
+fn shortest(tapes: &[Tape]) -> f64 {
+    let sampled = tapes.iter().flat_map(|t| {
+        let duration = t.span.1 - t.span.0;
+        t.readings.iter().map(move |r| duration / r.times.len().max(1) as f64)
+    });
+    SAMPLES * sampled.fold(0.0, f64::max)
+}
+
+/// Windows that speak for all in a search: those in which most is amiss, and an even selection.
+fn representative(stage: &Stage<'_>, fit: &Fit, many: f64) -> Fit {
+    let most = (fit.segments.len() / 6).clamp(*SPOKESMEN.start(), (many.sqrt() * *SPOKESMEN.end() as f64) as usize);
+    if fit.segments.len() <= 2 * most {
+        return fit.clone();
+    }
+    let excess = |s: &Segment| {
+        let r = stage.residuals(&fit.built, s);
+        r.norm_squared() - r.len() as f64
+    };
+    let excesses: Vec<f64> = fit.segments.par_iter().map(excess).collect();
+    let mut order: Vec<usize> = (0..fit.segments.len()).collect();
+    order.sort_by(|a, b| excesses[*b].total_cmp(&excesses[*a]));
+    let mut chosen: Vec<usize> = order.into_iter().take(most).collect();
+    chosen.extend((0..most).map(|k| (2 * k + 1) * fit.segments.len() / (2 * most)));
+    chosen.sort_unstable();
+    chosen.dedup();
+    let segments: Vec<Segment> = chosen.iter().map(|i| fit.segments[*i].clone()).collect();
+    let (cost, (count, noise)) = (stage.cost(&fit.built, &segments), stage.noise(&segments));
+    let freedom = fit.freedom * segments.len() / fit.segments.len();
+    Fit { segments, cost, count, noise, freedom, ..fit.clone() }
+}
+
+/// Flights between touches where there are some, else thirds of the runs, also where an event later in the run hides what is slow.
+fn long(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, mut segments: Vec<Segment>) -> Result<Fit, DiagnoseError> {
+    if segments.is_empty() {
+        let third = stage.tapes.iter().map(|t| (t.span.1 - t.span.0) / 3.0).fold(0.0, f64::max);
+        segments = cut(&nominal.built, stage.tapes, Some(third), |t| t.role == Role::Fit);
+    }
+    fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)
+}
+
+/// The stretches of at least a window in which nothing touches, as the windows' replays tell; empty where nothing ever or always touches.
+fn flights(stage: &Stage<'_>, windows: &Fit) -> Vec<Segment> {
+    let of = |s: &Segment| touches_in(&windows.built, &stage.tapes[s.run], &s.start, s.span, stage.pace);
+    let touched: Vec<Vec<Span>> = windows.segments.par_iter().map(of).collect();
+    if touched.iter().all(Vec::is_empty) {
+        return Vec::new();
+    }
+    let mut spans: Vec<(usize, Span)> = Vec::new();
+    let mut runs: Vec<usize> = windows.segments.iter().map(|s| s.run).collect();
+    runs.dedup();
+    for run in runs {
+        let of_run = windows.segments.iter().zip(&touched).filter(|(s, _)| s.run == run);
+        let least = of_run.clone().map(|(s, _)| s.span.to - s.span.from).fold(f64::INFINITY, f64::min);
+        let (mut from, end) = stage.tapes[run].span;
+        let closed: Vec<Span> = of_run.flat_map(|(_, touched)| touched.iter().copied()).collect();
+        for touch in closed.iter().chain(std::iter::once(&Span { from: end, to: end })) {
+            // The model may be late or early by a little.
+            if touch.from - from > least {
+                let margin = if touch.from < end { AHEAD * least } else { 0.0 };
+                spans.push((run, Span { from, to: touch.from - margin }));
+            }
+            from = touch.to + AHEAD * least;
+        }
+    }
+    spans.into_iter().map(|(run, span)| guessed(&windows.built, stage.tapes, run, span)).collect()
+}
+
+/// Share of a window that a flight keeps away from touches.
+const AHEAD: f64 = 0.02;
+
+fn together(a: Fit, b: Fit) -> Fit {
+    Fit {
+        segments: [a.segments, b.segments].concat(),
+        cost: a.cost + b.cost,
+        count: a.count + b.count,
+        noise: a.noise + b.noise,
+        freedom: a.freedom + b.freedom,
+        ..a
+    }
+}
