@@ -15,7 +15,6 @@ use crate::plant::Plant;
 use crate::replay::Pace;
 use crate::screen::{Score, screen};
 use crate::stretches::STEEP;
-use std::sync::Arc;
 
 /// What happened to one hypothesis in one round.
 #[derive(Clone, Debug)]
@@ -84,24 +83,32 @@ pub struct Standing {
     /// Over whole runs.
     pub whole: Fit,
     /// Segments of the lengths between, shortest first; none where windows lead to whole runs at once.
-    pub rungs: Arc<Vec<Vec<Segment>>>,
+    pub rungs: Vec<Vec<Segment>>,
+    /// Root mean square up to which whole runs follow far enough to be judged by.
+    pub reach: f64,
 }
 
 impl Standing {
     /// One set at both lengths.
     pub fn new(stage: &Stage<'_>, windows: Fit, whole: Fit, rungs: Vec<Vec<Segment>>) -> Self {
-        let standing = Self { windows, whole, rungs: Arc::new(rungs) };
-        let is_weighted = standing.follows() || !standing.rungs.is_empty();
-        if is_weighted { standing.weighted(stage) } else { standing }
+        let reach = if rungs.is_empty() { DIVERGED } else { STEEP };
+        Self { windows, whole, rungs, reach }.weighted(stage)
     }
 
-    /// Where windows are only there to begin from, none of them counts for more than all that is in it.
+    /// The same with weights: where windows are only there to begin from, or are far off yet, none of them counts for more than all that is in it.
     fn weighted(mut self, stage: &Stage<'_>) -> Self {
         for segment in &mut self.windows.segments {
-            segment.columns = None;
-            segment.weight = 1.0;
-            let r = stage.residuals(&self.windows.built, segment);
-            segment.weight = (r.len() as f64 / r.norm_squared()).min(1.0);
+            if segment.weight != 1.0 {
+                (segment.columns, segment.weight) = (None, 1.0);
+            }
+        }
+        let is_near = stage.cost(&self.windows.built, &self.windows.segments) < NEAR * NEAR * self.windows.count as f64;
+        if self.follows() || !is_near && self.reach <= STEEP {
+            for segment in &mut self.windows.segments {
+                segment.columns = None;
+                let r = stage.residuals(&self.windows.built, segment);
+                segment.weight = (r.len() as f64 / r.norm_squared()).min(1.0);
+            }
         }
         self.windows.cost = stage.cost(&self.windows.built, &self.windows.segments);
         (self.windows.count, self.windows.noise) = stage.noise(&self.windows.segments);
@@ -115,22 +122,7 @@ impl Standing {
 
     /// Whether whole runs follow the model far enough to be judged by.
     pub fn follows(&self) -> bool {
-        self.whole.rms() < if self.rungs.is_empty() { DIVERGED } else { STEEP }
-    }
-
-    /// The set of a fit in windows, fitted to longer and longer ones as far as these follow it; and whole runs under it.
-    fn climb(&self, stage: &Stage<'_>, plant: &Plant, mut set: EffectSet) -> Result<(EffectSet, Fit), DiagnoseError> {
-        for rung in self.rungs.iter() {
-            let settled = fit(stage, plant, set.frozen(), rung.clone(), Effort::STARTS)?;
-            let tried = fit(stage, plant, set.clone(), settled.segments, LOOK)?;
-            stage.work.watch.step(&format!("  windows of {:.3} s: error {:.3}", length_of(rung), tried.rms()));
-            if tried.rms() > STEEP {
-                break;
-            }
-            set = tried.set;
-        }
-        let whole = follow(stage, plant, set.frozen(), &self.whole.segments)?;
-        Ok((set.clone(), Fit { set, ..whole }))
+        self.whole.rms() < self.reach
     }
 
     /// The same with another set, its parameters fitted at the length that judges.
@@ -139,24 +131,52 @@ impl Standing {
             let whole = fit(stage, plant, set, self.whole.segments.clone(), effort)?;
             let windows = fit(stage, plant, whole.set.frozen(), self.windows.segments.clone(), Effort::STARTS)?;
             let windows = Fit { set: whole.set.clone(), ..windows };
-            return Ok(Self { windows, whole, rungs: Arc::clone(&self.rungs) }.weighted(stage));
+            return Ok(Self { windows, whole, ..self.clone() }.weighted(stage));
         }
-        let windows = fit(stage, plant, set, self.windows.segments.clone(), effort)?;
-        self.lengthened(stage, plant, windows, effort)
+        let windows = fit_in_turns(stage, plant, set, self.windows.segments.clone(), effort)?;
+        self.climbed(stage, plant, windows, effort)
     }
 
-    /// The standing of a set that was fitted in windows.
-    fn lengthened(
+    /// The standing of a set that was fitted in windows, in the longest windows that follow it, and over whole runs where these do.
+    fn climbed(
         &self,
         stage: &Stage<'_>,
         plant: &Plant,
-        windows: Fit,
+        mut windows: Fit,
         effort: Effort,
     ) -> Result<Self, DiagnoseError> {
-        let (set, whole) = self.climb(stage, plant, windows.set.clone())?;
-        let standing = Self { windows, whole, rungs: Arc::clone(&self.rungs) };
+        let mut rungs = self.rungs.clone();
+        while let Some(rung) = rungs.first() {
+            let settled = fit(stage, plant, windows.set.frozen(), rung.clone(), Effort::STARTS)?;
+            let tried = fit_in_turns(stage, plant, windows.set.clone(), settled.segments, effort)?;
+            let found = tried.set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
+            stage.work.watch.step(&format!("  windows of {:.3} s: error {:.3}, {found}", length_of(rung), tried.rms()));
+            if tried.rms() > STEEP {
+                break;
+            }
+            windows = tried;
+            rungs.remove(0);
+        }
+        let set = windows.set.clone();
+        let whole = Fit { set: set.clone(), ..follow(stage, plant, set.frozen(), &self.whole.segments)? };
+        let standing = Self { windows, whole, rungs, reach: self.reach };
         // They begin to follow: from now on they judge.
         if standing.follows() { standing.refit(stage, plant, set, effort) } else { Ok(standing) }
+    }
+
+    /// Whether this standing is better than another: whole runs that follow, longer windows that do, then the criterion.
+    fn is_better(&self, other: &Self) -> bool {
+        match (self.follows(), other.follows()) {
+            (true, false) => true,
+            (false, true) => false,
+            (false, false) if self.rungs.len() != other.rungs.len() => self.rungs.len() < other.rungs.len(),
+            _ => criterion(self.judge()) < criterion(other.judge()),
+        }
+    }
+
+    /// Whether what another standing is judged by is the same.
+    fn is_comparable(&self, other: &Self) -> bool {
+        self.follows() == other.follows() && (self.follows() || self.rungs.len() == other.rungs.len())
     }
 }
 
@@ -181,10 +201,39 @@ pub fn follow_with(
     fit(stage, plant, first.set, first.segments, effort)
 }
 
+/// A fit whose starts are begun anew as long as that finds lower valleys for some.
+fn fit_in_turns(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    set: EffectSet,
+    segments: Vec<Segment>,
+    effort: Effort,
+) -> Result<Fit, DiagnoseError> {
+    let mut now = fit(stage, plant, set, segments, effort)?;
+    for _ in 0..TURNS {
+        let segments = stage.begun_anew(&now.built, &now.segments, (Effort::STARTS.iterations, Effort::STARTS.share));
+        let is_lower = stage.cost(&now.built, &segments) < LOWER * now.cost;
+        if !is_lower {
+            break;
+        }
+        let next = fit(stage, plant, now.set.clone(), segments, effort)?;
+        stage.work.watch.step(&format!("  begun anew: error {:.3} → {:.3}", now.rms(), next.rms()));
+        now = next;
+    }
+    Ok(now)
+}
+
+/// Most times that starts are begun anew.
+const TURNS: usize = 3;
+/// Share of the cost below which that must bring it to be worth another fit.
+const LOWER: f64 = 0.98;
+
 fn length_of(segments: &[Segment]) -> f64 {
     segments.first().map_or(0.0, |s| s.span.to - s.span.from)
 }
 
+/// Root mean square in windows from which on each counts for what is in it.
+const NEAR: f64 = 3.0;
 /// Root mean square over whole runs from the starts of windows beyond which no start makes them follow.
 const HOPELESS: f64 = 3000.0;
 /// Root mean square over whole runs beyond which they do not follow the model at all, and windows judge.
@@ -229,15 +278,14 @@ pub fn search(
             }
             let (other, mut tried) = refit_best(stage, plant, &now, &some, (limits, round))?;
             attempts.append(&mut tried);
-            if other.as_ref().is_some_and(|o| best.as_ref().is_none_or(|b| is_better(o, b))) {
+            if other.as_ref().is_some_and(|o| best.as_ref().is_none_or(|b| o.is_better(b))) {
                 best = other;
             }
         }
         let is_worthwhile = |b: &Standing| {
             let (before, after) = (now.judge(), b.judge());
-            (b.follows() && !now.follows())
-                || (criterion(after) < criterion(before)
-                    && before.cost - after.cost > WORTHWHILE * before.excess().max(0.0))
+            let is_clear = before.cost - after.cost > WORTHWHILE * before.excess().max(0.0);
+            b.is_better(&now) && (is_clear || !b.is_comparable(&now))
         };
         let Some(best) = best.filter(is_worthwhile) else { break };
         let added = best.judge().set.members.last().map(|(h, _)| h.title()).unwrap_or_default();
@@ -246,11 +294,10 @@ pub fn search(
         let set = best.judge().set.clone();
         refine(stage, &best);
         now = best.refit(stage, plant, set, WHOLE)?;
-        stage.work.watch.step(&format!("kept {added}: {}", errors(&now)));
+        let found = now.judge().set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
+        stage.work.watch.step(&format!("kept {added}: {}, {found}", errors(&now)));
         now = simplify(stage, plant, now, &all)?;
-        if !now.rungs.is_empty() && !now.follows() {
-            now = now.weighted(stage);
-        }
+        now = now.weighted(stage);
         round += 1;
     }
     Ok((prune(stage, plant, now)?, attempts))
@@ -265,15 +312,6 @@ fn refine(stage: &mut Stage<'_>, standing: &Standing) {
             free: found.pace.free.min(stage.pace.free).max(found.pace.step),
         };
         stage.work.watch.step(&format!("steps of {:.3e} s, {:.3e} s in free flight", stage.pace.step, stage.pace.free));
-    }
-}
-
-/// Whether one standing is better than another: whole runs that follow, then the criterion.
-fn is_better(a: &Standing, b: &Standing) -> bool {
-    match (a.follows(), b.follows()) {
-        (true, false) => true,
-        (false, true) => false,
-        _ => criterion(a.judge()) < criterion(b.judge()),
     }
 }
 
@@ -299,7 +337,7 @@ fn refit_best(
         let here = if is_window { &now.windows } else { &now.whole };
         // What is found in windows and explains whole runs needs no screen over these.
         let is_done = best.as_ref().is_some_and(|b| is_enough(now, b, limits));
-        let is_far = here.rms() > LINEAR || !now.rungs.is_empty() && !now.follows();
+        let is_far = here.rms() > LINEAR.min(now.reach);
         if !is_window && (is_done || is_far) {
             break;
         }
@@ -310,20 +348,21 @@ fn refit_best(
         all.retain(|h| order.iter().any(|(name, place)| h.name == name && h.place == *place));
         let most = ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max);
         for (at, tried) in ready {
-            if here.cost - tried.cost < NEARLY * most {
+            let is_done = best.as_ref().is_some_and(|b| !is_significant(b.judge(), limits));
+            if is_done || here.cost - tried.cost < NEARLY * most {
                 continue;
             }
             let standing = if is_window {
-                now.lengthened(stage, plant, tried, LOOK)?
+                now.climbed(stage, plant, tried, LOOK)?
             } else {
-                Standing { windows: now.windows.clone(), whole: tried, rungs: Arc::clone(&now.rungs) }
+                Standing { whole: tried, ..now.clone() }
             };
             let name = format!("{} at {}", attempts[at].name, attempts[at].place);
             stage.work.watch.step(&format!("{name}: {}", errors(&standing)));
             if standing.follows() && now.follows() {
                 attempts[at].tell(&now.whole, &standing.whole);
             }
-            if best.as_ref().is_none_or(|b| is_better(&standing, b)) {
+            if best.as_ref().is_none_or(|b| standing.is_better(b)) {
                 best = Some(standing);
             }
         }
@@ -334,7 +373,8 @@ fn refit_best(
 /// Whether a standing leaves so little of what there was that other hypotheses need not be looked for in this round.
 fn is_enough(now: &Standing, best: &Standing, limits: &Limits) -> bool {
     !is_significant(best.judge(), limits)
-        || best.follows() == now.follows() && best.judge().excess() < UNEXPLAINED * now.judge().excess()
+        || best.rungs.len() < now.rungs.len()
+        || best.is_comparable(now) && best.judge().excess() < UNEXPLAINED * now.judge().excess()
 }
 
 /// Screens at one length and refits there what is most promising: index of the attempt and fit.
@@ -346,7 +386,14 @@ fn refit_promising(
     (limits, round): (&Limits, usize),
     attempts: &mut Vec<Attempt>,
 ) -> Result<Vec<(usize, Fit)>, DiagnoseError> {
-    stage.work.watch.step(&format!("screen {} hypotheses beside error {:.3}", all.len(), here.rms()));
+    let columns: usize = all.iter().flat_map(|h| &h.screens).map(|s| s.columns.len()).sum();
+    stage.work.watch.step(&format!(
+        "screen {} hypotheses ({} columns, {} segments) beside error {:.3}",
+        all.len(),
+        columns,
+        here.segments.len(),
+        here.rms()
+    ));
     let scores = screen(stage, plant, here, all)?;
     let interesting = scores_of_interest(all, &scores);
     let picked = pick(here, all, &interesting, limits.refits);
@@ -487,7 +534,7 @@ fn prune(stage: &Stage<'_>, plant: &Plant, mut now: Standing) -> Result<Standing
     while now.judge().set.members.len() > 1 && member < now.judge().set.members.len() {
         let less = now.judge().set.without(member);
         let tried = now.refit(stage, plant, less, LOOK)?;
-        if tried.follows() == now.follows() && criterion(tried.judge()) <= criterion(now.judge()) {
+        if !now.is_better(&tried) {
             let set = tried.judge().set.clone();
             now = tried.refit(stage, plant, set, WHOLE)?;
             member = 0;
@@ -511,7 +558,7 @@ fn simplify(
         let Some((name, value)) = h.plainer(x) else { continue };
         let Some(plain) = all.iter().find(|p| p.name == name && p.place == h.place) else { continue };
         let tried = now.refit(stage, plant, set.without(member).with(plain, &[value]), LOOK)?;
-        if tried.follows() == now.follows() && criterion(tried.judge()) <= criterion(now.judge()) {
+        if !now.is_better(&tried) {
             stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
             now = tried;
         }

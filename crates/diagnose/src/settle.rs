@@ -19,6 +19,8 @@ const SETTLINGS: usize = 2;
 const DAMPINGS: usize = 6;
 /// Smallest damping beside none.
 const LEAST_DAMPING: f64 = 1e-5;
+/// Mean square from which on a start is suspected to stand in a wrong valley.
+const POOR: f64 = 1.5;
 /// Promised fall of a segment's cost below which its start has converged, variances of noise.
 const NEXT_TO_NOTHING: f64 = 0.1;
 
@@ -102,6 +104,20 @@ impl Stage<'_> {
             (now.segment, now.cost, r) = (moved, cost, after);
         }
         (now, sizes)
+    }
+
+    /// Segments whose starts are begun anew from what their samples say, where that leads to a lower valley than they stand in.
+    pub fn begun_anew(&self, built: &Built, segments: &[Segment], (iterations, share): (usize, f64)) -> Vec<Segment> {
+        let of = |segment: &Segment| {
+            let now = finite(self.residuals(built, segment).norm_squared());
+            if now < POOR * segment.weight * self.count(segment) as f64 {
+                return segment.clone();
+            }
+            let fresh = Segment { start: segment.guess.fitted_to(built), columns: None, ..segment.clone() };
+            let (other, _) = self.fit_start(built, &fresh, &[], (iterations, share));
+            if other.cost < now { other.segment } else { segment.clone() }
+        };
+        segments.par_iter().map(of).collect()
     }
 
     /// The first step that lowers the cost: the full one, then more and more damped ones.
