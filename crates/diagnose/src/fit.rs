@@ -213,13 +213,14 @@ fn iterate(
     let k = sum_reduced(&linear);
     let n = slots.len();
     let (a, b, left) = (k.view((0, 0), (n, n)).into_owned(), k.view((0, n), (n, 1)).into_owned(), k[(n, n)]);
-    rescale(sizes, &a, now.count);
+    let at: Vec<f64> = slots.iter().map(|(m, c)| now.set.members[*m].1[*c]).collect();
+    let was_blind = rescale(sizes, &a, (now.count, &at));
     now.freedom = n + linear.iter().map(|s| s.shown).sum::<usize>();
     now.covariance = pseudo_inverse(&a);
     let promised = now.cost - left + (b.transpose() * &now.covariance * &b)[(0, 0)];
     let was_known = effort.reuse && now.segments.iter().any(|s| s.columns.is_some());
     if promised < NEXT_TO_NOTHING.max(effort.share * now.excess()) {
-        now.converged = true;
+        now.converged = !was_blind;
         return Ok(damping);
     }
     now.segments.iter_mut().zip(&linear).for_each(|(s, l)| s.columns.clone_from(&l.columns));
@@ -242,7 +243,7 @@ fn iterate(
                 (now.set, now.built, now.segments, now.cost) = (set, built, segments, cost);
                 // A step that had to be shortened says nothing about the end of the way, nor does one along old derivatives.
                 let is_plain = trial == 0 && !was_known;
-                now.converged = is_plain && gained < NEXT_TO_NOTHING.max(effort.share * now.excess());
+                now.converged = !was_blind && is_plain && gained < NEXT_TO_NOTHING.max(effort.share * now.excess());
                 if trial > 0 && was_known {
                     now.segments.iter_mut().for_each(|s| s.columns = None);
                 }
@@ -278,15 +279,29 @@ pub fn vary(
     slots.iter().zip(sizes).map(vary_one).collect()
 }
 
-/// Steps for the next linearisation: a fifth of the noise, as far as the eliminated columns tell.
-fn rescale(sizes: &mut [f64], a: &DMatrix<f64>, count: usize) {
+/// Steps for the next linearisation: a fifth of the noise, as far as the eliminated columns tell; much longer ones where these were too
+/// short to show anything. Whether there were such.
+fn rescale(sizes: &mut [f64], a: &DMatrix<f64>, (count, at): (usize, &[f64])) -> bool {
+    let mut was_blind = false;
     for (k, size) in sizes.iter_mut().enumerate() {
+        let longest = (FARTHEST * at[k].abs()).max(FARTHEST_FROM_ZERO);
+        if a[(k, k)] <= 0.0 && *size < longest {
+            *size = (BLIND * *size).min(longest);
+            was_blind = true;
+        }
         let rms = *size * (a[(k, k)].max(0.0) / count.max(1) as f64).sqrt();
         if rms > 0.0 && !(0.01..1.0).contains(&rms) {
             *size *= (0.1 / rms).clamp(1e-3, 1e3);
         }
     }
+    was_blind
 }
+
+/// Growth of a step that showed nothing.
+const BLIND: f64 = 100.0;
+/// How far such a step may go, relative to where the coordinate stands, and from zero in its own unit.
+const FARTHEST: f64 = 0.2;
+const FARTHEST_FROM_ZERO: f64 = 1e-2;
 
 /// −(A + λ diag A)⁻¹ b in scaled coordinates.
 fn step(a: &DMatrix<f64>, b: &DMatrix<f64>, damping: f64) -> DVector<f64> {

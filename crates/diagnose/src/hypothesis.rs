@@ -145,9 +145,22 @@ impl Hypothesis {
         format!("{} at {}", self.name, self.place)
     }
 
-    /// Whether the cost has a valley for each frequency, or a long flat one along a speed, and one refit may end in the wrong place.
+    /// Whether the cost has a valley for each frequency, or a long flat one along a speed or a stiffness, and one refit may end in the wrong place.
     pub fn has_valleys(&self) -> bool {
-        matches!(self.name, "slosh" | "flexible-appendage" | "friction-stribeck" | "joint-stribeck-friction")
+        matches!(
+            self.name,
+            "slosh"
+                | "flexible-appendage"
+                | "friction-stribeck"
+                | "joint-stribeck-friction"
+                | "joint-elasticity"
+                | "joint-backlash"
+        )
+    }
+
+    /// Whether it concerns nothing but how a sensor reads what there is to be read at the time.
+    pub fn is_reading(&self) -> bool {
+        matches!(self.name, "sensor-bias" | "sensor-scale" | "sensor-misalignment")
     }
 
     /// Neutral or typical coordinates.
@@ -264,13 +277,15 @@ impl Hypothesis {
         Some(self.clamped(&x))
     }
 
-    /// The law with one number that this one becomes where its other numbers do nothing, and that number.
-    pub fn plainer(&self, x: &[f64]) -> Option<(&'static str, f64)> {
+    /// The law that this one becomes where some of its numbers do nothing, and the coordinates of that.
+    pub fn plainer(&self, x: &[f64]) -> Option<(&'static str, Vec<f64>)> {
         match self.name {
-            "joint-stribeck-friction" => Some(("joint-coulomb-friction", x[0])),
-            "joint-friction-asymmetry" => Some(("joint-coulomb-friction", 0.5 * (x[0] + x[1]))),
-            "friction-stribeck" => Some(("friction-coefficient", x[1])),
-            "friction-anisotropy" => Some(("friction-coefficient", x[0])),
+            "joint-stribeck-friction" => Some(("joint-coulomb-friction", vec![x[0]])),
+            "joint-friction-asymmetry" => Some(("joint-coulomb-friction", vec![0.5 * (x[0] + x[1])])),
+            "joint-backlash" => Some(("joint-elasticity", vec![(-x[1]).exp(), x[2]])),
+            "tether-stiffness" => Some(("linear-drag", vec![x[4]])),
+            "friction-stribeck" => Some(("friction-coefficient", vec![x[1]])),
+            "friction-anisotropy" => Some(("friction-coefficient", vec![x[0]])),
             _ => None,
         }
     }

@@ -10,12 +10,13 @@
 //! test need.
 
 use crate::plant::Built;
-use crate::replay::{Pace, Span, residuals};
+use crate::replay::{Pace, Span, readings, residuals, residuals_of};
 use crate::start::{Freedom, Start, freedoms};
 use crate::tape::Tape;
 use crate::work::Work;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use scenario::measure::Reading as Measured;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -116,6 +117,26 @@ impl Stage<'_> {
             Ok(r) if segment.weight == 1.0 => DVector::from_vec(r),
             Ok(r) => DVector::from_vec(r) * segment.weight.sqrt(),
             Err(_) => DVector::from_element(self.count(segment), f64::INFINITY),
+        }
+    }
+
+    /// What faultless sensors would read in a segment; none where the replay left the range of numbers.
+    pub fn readings(&self, built: &Built, segment: &Segment) -> Option<Vec<Measured>> {
+        self.work.add(segment.span.to - segment.span.from);
+        readings(built, &self.tapes[segment.run], &segment.start, segment.span, self.pace).ok()
+    }
+
+    /// Change of the residual per unit of a variation that concerns nothing but how readings are read.
+    pub fn column_of(
+        &self,
+        readings: &[Measured],
+        variation: &Variation,
+        segment: &Segment,
+        r: &DVector<f64>,
+    ) -> DVector<f64> {
+        match residuals_of(readings, &variation.built, &self.tapes[segment.run], segment.span) {
+            Ok(moved) => sane((DVector::from_vec(moved) * segment.weight.sqrt() - r) / variation.step),
+            Err(_) => DVector::zeros(r.len()),
         }
     }
 

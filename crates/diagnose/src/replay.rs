@@ -8,7 +8,7 @@ use crate::plant::Built;
 use crate::reading::Value;
 use crate::start::Start;
 use crate::tape::{Event, Tape};
-use scenario::measure::{Gauge, SensorModel};
+use scenario::measure::{Gauge, Reading as Measured, SensorModel};
 use sim::World;
 
 /// A stretch of a run, replayed from a start of its own.
@@ -52,20 +52,65 @@ pub fn observe(
     pace: Pace,
     mut look: impl FnMut(usize, &Event, &Value),
 ) -> Result<(), DiagnoseError> {
+    let sensors = sensors_of(built, tape)?;
+    measure(built, tape, start, (span, pace), &sensors, |i, event, truth| {
+        look(i, event, &Value::from(sensors[event.reading as usize].1.apply(truth)));
+    })
+}
+
+/// What faultless sensors would read in a span, by the number of the event; late ones are late.
+pub fn readings(
+    built: &Built,
+    tape: &Tape,
+    start: &Start,
+    span: Span,
+    pace: Pace,
+) -> Result<Vec<Measured>, DiagnoseError> {
+    let mut out = vec![Measured::Scalar(f64::NAN); tape.range(span).len()];
+    measure(built, tape, start, (span, pace), &sensors_of(built, tape)?, |i, _, truth| out[i] = *truth)?;
+    Ok(out)
+}
+
+/// Residuals of faultless readings when the sensors have the faults of a model, but for delays.
+pub fn residuals_of(readings: &[Measured], built: &Built, tape: &Tape, span: Span) -> Result<Vec<f64>, DiagnoseError> {
+    let sensors = sensors_of(built, tape)?;
+    let range = tape.range(span);
+    let offset = |i: usize| tape.offsets[range.start + i] - tape.offsets[range.start];
+    let mut out = vec![f64::NAN; offset(range.len())];
+    for (i, (truth, event)) in readings.iter().zip(&tape.events[range.clone()]).enumerate() {
+        let value = Value::from(sensors[event.reading as usize].1.apply(truth));
+        tape.readings[event.reading as usize].write_residual(event.sample as usize, &value, &mut out[offset(i)..]);
+    }
+    Ok(out)
+}
+
+fn sensors_of(built: &Built, tape: &Tape) -> Result<Vec<(Gauge, SensorModel)>, DiagnoseError> {
     let sensors: Vec<(Gauge, SensorModel)> = tape.readings.iter().filter_map(|r| built.sensor(&r.channel)).collect();
     if sensors.len() < tape.readings.len() {
         let what = "a channel is not measured in this model".to_owned();
         return Err(DiagnoseError::Replay { file: tape.file.clone(), what });
     }
-    let events = events_in(tape, span, &sensors);
+    Ok(sensors)
+}
+
+/// Replays a span and hands what every sensor is given to read to `look`.
+fn measure(
+    built: &Built,
+    tape: &Tape,
+    start: &Start,
+    (span, pace): (Span, Pace),
+    sensors: &[(Gauge, SensorModel)],
+    mut look: impl FnMut(usize, &Event, &Measured),
+) -> Result<(), DiagnoseError> {
+    let events = events_in(tape, span, sensors);
     let mut replay = Replay::new(built, tape, start, span.from, pace);
     for (i, event) in &events {
         replay.advance_to(event.time)?;
-        let (gauge, sensor) = &sensors[event.reading as usize];
+        let (gauge, _) = &sensors[event.reading as usize];
         if gauge.reads_contact() {
             replay.world.refresh_touches();
         }
-        look(*i, event, &Value::from(sensor.apply(&gauge.read(&replay.world))));
+        look(*i, event, &gauge.read(&replay.world));
     }
     Ok(())
 }

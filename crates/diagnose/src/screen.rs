@@ -36,6 +36,8 @@ struct Probe {
     variation: Variation,
     /// Steps of the memory that it brings, where its starts are to be freed.
     memory: Option<Vec<f64>>,
+    /// Whether it concerns nothing but how readings are read.
+    is_reading: bool,
 }
 
 /// Root mean square (units of noise) that a column's step shall have on the pilot segments.
@@ -110,8 +112,12 @@ fn probes_of(stage: &Stage<'_>, plant: &Plant, fit: &Fit, hypothesis: &Hypothesi
         let variation = if near { first } else { build(&c.base, &c.direction, step)? };
         Some(variation)
     };
-    let mut probes: Vec<Probe> =
-        point.columns.iter().filter_map(tuned).map(|variation| Probe { variation, memory: None }).collect();
+    let mut probes: Vec<Probe> = point
+        .columns
+        .iter()
+        .filter_map(tuned)
+        .map(|variation| Probe { variation, memory: None, is_reading: hypothesis.is_reading() })
+        .collect();
     // Memory is much the same in all columns of a point: two of them tell its starts.
     let pilot = &fit.segments[fit.segments.len() / 2];
     for probe in probes.iter_mut().step_by(3).take(2) {
@@ -158,8 +164,13 @@ fn products_of(
     let r = stage.residuals(&fit.built, segment);
     let start = stage.columns_of(&fit.built, segment, &r);
     let g: Vec<DVector<f64>> = active.par_iter().map(|v| stage.column(v, segment, &r)).collect();
+    let readings = stage.readings(&fit.built, segment).unwrap_or_default();
+    let column = |p: &Probe| match p.is_reading {
+        true => stage.column_of(&readings, &p.variation, segment, &r),
+        false => stage.column(&p.variation, segment, &r),
+    };
     let of_point = |probes: &Vec<Probe>| {
-        let columns: Vec<DVector<f64>> = probes.iter().map(|p| stage.column(&p.variation, segment, &r)).collect();
+        let columns: Vec<DVector<f64>> = probes.iter().map(column).collect();
         let own: Vec<DVector<f64>> =
             probes.iter().flat_map(|p| own_columns(stage, segment, &start.freedoms, p).0).collect();
         let starts: Vec<&DVector<f64>> = start.columns.iter().chain(&own).collect();

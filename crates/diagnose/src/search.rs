@@ -14,7 +14,9 @@ use crate::pace;
 use crate::plant::Plant;
 use crate::replay::Pace;
 use crate::screen::{Score, screen};
+use crate::start::count_memory;
 use crate::stretches::STEEP;
+use std::sync::Arc;
 
 /// What happened to one hypothesis in one round.
 #[derive(Clone, Debug)]
@@ -128,7 +130,7 @@ impl Standing {
     /// The same with another set, its parameters fitted at the length that judges.
     fn refit(&self, stage: &Stage<'_>, plant: &Plant, set: EffectSet, effort: Effort) -> Result<Self, DiagnoseError> {
         if self.follows() {
-            let whole = fit(stage, plant, set, self.whole.segments.clone(), effort)?;
+            let whole = fit_in_turns(stage, plant, set, self.whole.segments.clone(), effort)?;
             let windows = fit(stage, plant, whole.set.frozen(), self.windows.segments.clone(), Effort::STARTS)?;
             let windows = Fit { set: whole.set.clone(), ..windows };
             return Ok(Self { windows, whole, ..self.clone() }.weighted(stage));
@@ -158,7 +160,13 @@ impl Standing {
             rungs.remove(0);
         }
         let set = windows.set.clone();
-        let whole = Fit { set: set.clone(), ..follow(stage, plant, set.frozen(), &self.whole.segments)? };
+        let segments = begun_as(&self.whole.segments, &windows.segments);
+        // Where windows had to be shortened, whole runs are far off until the longest windows follow well.
+        let is_far = self.reach <= STEEP && (!rungs.is_empty() || windows.rms() > NEAR);
+        let whole = match is_far {
+            true => Fit { segments, set: set.clone(), built: windows.built.clone(), ..self.whole.clone() },
+            false => Fit { set: set.clone(), ..follow(stage, plant, set.frozen(), &segments)? },
+        };
         let standing = Self { windows, whole, rungs, reach: self.reach };
         // They begin to follow: from now on they judge.
         if standing.follows() { standing.refit(stage, plant, set, effort) } else { Ok(standing) }
@@ -199,6 +207,17 @@ pub fn follow_with(
         return Ok(Fit { segments: segments.to_vec(), ..first });
     }
     fit(stage, plant, first.set, first.segments, effort)
+}
+
+/// Whole runs that may begin as the longest window does with which they begin.
+fn begun_as(whole: &[Segment], windows: &[Segment]) -> Vec<Segment> {
+    let of = |run: &Segment| {
+        let first = windows.iter().filter(|w| w.run == run.run && w.span.from == run.span.from);
+        let longest = first.max_by(|a, b| a.span.to.total_cmp(&b.span.to));
+        let guess = longest.map_or_else(|| Arc::clone(&run.guess), |w| Arc::new(w.start.clone()));
+        Segment { guess, ..run.clone() }
+    };
+    whole.iter().map(of).collect()
 }
 
 /// A fit whose starts are begun anew as long as that finds lower valleys for some.
@@ -244,7 +263,9 @@ const LINEAR: f64 = 60.0;
 const WORTHWHILE: f64 = 0.03;
 /// Promise relative to what another refit has brought below which none is made.
 const RIVAL: f64 = 0.9;
-/// Share of the excess that the plainer hypotheses must leave for those that are dear to screen.
+/// Share of the cost that cheap hypotheses promise where those that are dear to screen need not be.
+const SUFFICIENT: f64 = 0.5;
+/// Share of the excess that a set must leave for further screens in a round.
 const UNEXPLAINED: f64 = 0.05;
 /// Hypotheses of a screen that a watcher hears of.
 const TOLD: usize = 6;
@@ -263,25 +284,16 @@ pub fn search(
     hypotheses: &Candidates<'_>,
     limits: &Limits,
 ) -> Result<(Standing, Vec<Attempt>), DiagnoseError> {
-    let mut attempts = Vec::new();
+    let (mut attempts, mut known) = (Vec::new(), Vec::new());
     let mut round = 0;
     while is_significant(now.judge(), limits) && now.judge().set.members.len() < limits.effects {
         let is_active = |h: &Hypothesis| now.judge().set.members.iter().any(|(m, _)| m.title() == h.title());
         let all = hypotheses(stage, &now.windows)?;
+        known.extend(all.iter().cloned());
         let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) =
             all.iter().filter(|h| !is_active(h)).cloned().partition(|h| h.is_dear);
-        let mut best: Option<Standing> = None;
-        // What is dear to screen is screened only where the rest leaves something.
-        for some in [cheap, dear] {
-            if best.as_ref().is_some_and(|b| is_enough(&now, b, limits)) {
-                break;
-            }
-            let (other, mut tried) = refit_best(stage, plant, &now, &some, (limits, round))?;
-            attempts.append(&mut tried);
-            if other.as_ref().is_some_and(|o| best.as_ref().is_none_or(|b| o.is_better(b))) {
-                best = other;
-            }
-        }
+        let (best, mut tried) = refit_best(stage, plant, &now, (cheap, &dear), (limits, round))?;
+        attempts.append(&mut tried);
         let is_worthwhile = |b: &Standing| {
             let (before, after) = (now.judge(), b.judge());
             let is_clear = before.cost - after.cost > WORTHWHILE * before.excess().max(0.0);
@@ -296,10 +308,10 @@ pub fn search(
         now = best.refit(stage, plant, set, WHOLE)?;
         let found = now.judge().set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
         stage.work.watch.step(&format!("kept {added}: {}, {found}", errors(&now)));
-        now = simplify(stage, plant, now, &all)?;
         now = now.weighted(stage);
         round += 1;
     }
+    now = simplify(stage, plant, now, &known)?;
     Ok((prune(stage, plant, now)?, attempts))
 }
 
@@ -324,12 +336,11 @@ fn refit_best(
     stage: &Stage<'_>,
     plant: &Plant,
     now: &Standing,
-    all: &[Hypothesis],
+    (mut all, dear): (Vec<Hypothesis>, &[Hypothesis]),
     (limits, round): (&Limits, usize),
 ) -> Result<(Option<Standing>, Vec<Attempt>), DiagnoseError> {
     let mut attempts: Vec<Attempt> = Vec::new();
     let mut best: Option<Standing> = None;
-    let mut all = all.to_vec();
     for is_window in [true, false] {
         if all.is_empty() {
             break;
@@ -341,7 +352,16 @@ fn refit_best(
         if !is_window && (is_done || is_far) {
             break;
         }
-        let ready = refit_promising(stage, plant, here, &all, (limits, round), &mut attempts)?;
+        let mut scores = screen_aloud(stage, plant, here, &all)?;
+        // What is dear to screen is screened only where the rest leaves something.
+        let promised = scores.first().map_or(0.0, |s| s.score / here.cost);
+        if is_window && promised < SUFFICIENT && !dear.is_empty() {
+            let further = screen_aloud(stage, plant, here, dear)?;
+            scores.extend(further.into_iter().map(|s| Score { hypothesis: s.hypothesis + all.len(), ..s }));
+            scores.sort_by(|a, b| b.score.total_cmp(&a.score));
+            all.extend(dear.iter().cloned());
+        }
+        let ready = refit_promising(stage, plant, here, (&all, &scores), (limits, round), &mut attempts)?;
         // Over whole runs only what the windows did not rule out is screened.
         let order: Vec<(String, String)> =
             attempts.iter().take(SCREENED).map(|a| (a.name.clone(), a.place.clone())).collect();
@@ -377,25 +397,24 @@ fn is_enough(now: &Standing, best: &Standing, limits: &Limits) -> bool {
         || best.is_comparable(now) && best.judge().excess() < UNEXPLAINED * now.judge().excess()
 }
 
-/// Screens at one length and refits there what is most promising: index of the attempt and fit.
+/// Screens, and says so.
+fn screen_aloud(stage: &Stage<'_>, plant: &Plant, here: &Fit, all: &[Hypothesis]) -> Result<Vec<Score>, DiagnoseError> {
+    let columns: usize = all.iter().flat_map(|h| &h.screens).map(|s| s.columns.len()).sum();
+    let (count, error) = (all.len(), here.rms());
+    stage.work.watch.step(&format!("screen {count} hypotheses in {columns} directions beside error {error:.3}"));
+    screen(stage, plant, here, all)
+}
+
+/// Refits what a screen found most promising: index of the attempt and fit.
 fn refit_promising(
     stage: &Stage<'_>,
     plant: &Plant,
     here: &Fit,
-    all: &[Hypothesis],
+    (all, scores): (&[Hypothesis], &[Score]),
     (limits, round): (&Limits, usize),
     attempts: &mut Vec<Attempt>,
 ) -> Result<Vec<(usize, Fit)>, DiagnoseError> {
-    let columns: usize = all.iter().flat_map(|h| &h.screens).map(|s| s.columns.len()).sum();
-    stage.work.watch.step(&format!(
-        "screen {} hypotheses ({} columns, {} segments) beside error {:.3}",
-        all.len(),
-        columns,
-        here.segments.len(),
-        here.rms()
-    ));
-    let scores = screen(stage, plant, here, all)?;
-    let interesting = scores_of_interest(all, &scores);
+    let interesting = scores_of_interest(all, scores);
     let picked = pick(here, all, &interesting, limits.refits);
     for score in interesting.iter().take(TOLD) {
         let h = &all[score.hypothesis];
@@ -476,7 +495,13 @@ fn possible(stage: &Stage<'_>, plant: &Plant, now: &Fit, h: &Hypothesis, promise
     for share in (0..SHARES).map(|k| 0.5f64.powi(k)) {
         let x: Vec<f64> = promised.iter().zip(&neutral).map(|(x, n)| n + share * (x - n)).collect();
         let Ok(built) = plant.build(&now.set.with(h, &x).effects()) else { continue };
-        let (_, cost) = stage.settle(&built, &now.segments);
+        let cost = if count_memory(&built) > count_memory(&now.built) {
+            // What remembers is moving already: its own starts are fitted before it is judged.
+            let few: Vec<Segment> = now.segments.iter().step_by(FEW).cloned().collect();
+            stage.fit_starts(&built, &few, (2, 1e-2)).iter().map(|s| s.cost).sum()
+        } else {
+            stage.settle(&built, &now.segments).1
+        };
         if best.as_ref().is_some_and(|b| cost >= b.0) {
             break;
         }
@@ -485,6 +510,8 @@ fn possible(stage: &Stage<'_>, plant: &Plant, now: &Fit, h: &Hypothesis, promise
     best.map(|b| b.1)
 }
 
+/// One in so many segments tells how near what remembers may begin.
+const FEW: usize = 3;
 /// Halvings of a promise.
 const SHARES: i32 = 5;
 
@@ -557,7 +584,7 @@ fn simplify(
         let (h, x) = &set.members[member];
         let Some((name, value)) = h.plainer(x) else { continue };
         let Some(plain) = all.iter().find(|p| p.name == name && p.place == h.place) else { continue };
-        let tried = now.refit(stage, plant, set.without(member).with(plain, &[value]), LOOK)?;
+        let tried = now.refit(stage, plant, set.without(member).with(plain, &value), LOOK)?;
         if !now.is_better(&tried) {
             stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
             now = tried;

@@ -252,7 +252,8 @@ impl Start {
     }
 }
 
-fn count_memory(built: &Built) -> usize {
+/// Slots of memory that a start has in a model.
+pub(crate) fn count_memory(built: &Built) -> usize {
     built.start.effects.len()
 }
 

@@ -71,6 +71,16 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
     some = representative(stage, &some, many);
     let mut first = joined(&nominal.segments, stage.tapes);
     let flights = flights(stage, nominal);
+    // What lies within flights is seen in these.
+    if !flights.is_empty() {
+        let within = |s: &Segment| {
+            flights.iter().any(|f| f.run == s.run && f.span.from <= s.span.from && s.span.to <= f.span.to)
+        };
+        let touching: Vec<Segment> = some.segments.iter().filter(|s| !within(s)).cloned().collect();
+        if !touching.is_empty() {
+            some = of_segments(stage, &some, touching);
+        }
+    }
     if !flights.is_empty() || rungs.is_empty() && nominal.rms() < FAR {
         let long = long(stage, plant, nominal, flights)?;
         let begins = |s: &&Segment| s.span.from == stage.tapes[s.run].span.0;
@@ -108,7 +118,11 @@ fn representative(stage: &Stage<'_>, fit: &Fit, many: f64) -> Fit {
     chosen.extend((0..most).map(|k| (2 * k + 1) * fit.segments.len() / (2 * most)));
     chosen.sort_unstable();
     chosen.dedup();
-    let segments: Vec<Segment> = chosen.iter().map(|i| fit.segments[*i].clone()).collect();
+    of_segments(stage, fit, chosen.iter().map(|i| fit.segments[*i].clone()).collect())
+}
+
+/// A fit of some of its segments.
+fn of_segments(stage: &Stage<'_>, fit: &Fit, segments: Vec<Segment>) -> Fit {
     let (cost, (count, noise)) = (stage.cost(&fit.built, &segments), stage.noise(&segments));
     let freedom = fit.freedom * segments.len() / fit.segments.len();
     Fit { segments, cost, count, noise, freedom, ..fit.clone() }

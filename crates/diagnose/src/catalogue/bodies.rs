@@ -26,7 +26,7 @@ pub(super) fn add(body: &BodyFact, facts: &Facts, all: &mut Vec<Hypothesis>) {
         let drag = |name| hypothesis(name, place, vec![Coordinate::level("c", 0.0)]).screened(&[(0, 1e-4)]);
         all.push(drag("linear-drag"));
         all.push(drag("quadratic-drag"));
-        add_tether(place, all);
+        add_tether(place, &body.mask[3..], all);
     }
     if turns {
         add_constant("constant-torque", place, &body.mask[..3], 1e-6, all);
@@ -41,23 +41,33 @@ pub(super) fn add(body: &BodyFact, facts: &Facts, all: &mut Vec<Hypothesis>) {
 fn add_inertial(body: &BodyFact, place: &str, all: &mut Vec<Hypothesis>) {
     let m = body.mass;
     let of_arm = !body.is_base;
+    let is_planar = body.is_base && !body.mask[0] && !body.mask[1];
     let weighs = of_arm || (body.mask[3..].iter().any(|m| *m) && !body.is_torque_free);
     if weighs {
         let mass = vec![Coordinate { bounds: [0.05 * m, 20.0 * m], ..Coordinate::free("mass", m) }];
         all.push(hypothesis("body-mass", place, mass).screened(&[(0, 1e-4 * m)]).nominal_number());
         let com = (0..3).map(|k| Coordinate::free(COM[k], body.com[k])).collect();
-        all.push(hypothesis("body-com", place, com).screened(&[(0, 1e-5), (1, 1e-5), (2, 1e-5)]).nominal_number());
+        // In the plane only what lies in it shows.
+        let shown: Vec<(usize, f64)> = (0..3).filter(|k| !is_planar || *k < 2).map(|k| (k, 1e-5)).collect();
+        let mut h = hypothesis("body-com", place, com).screened(&shown).nominal_number();
+        h.held = (shown.len()..3).collect();
+        all.push(h);
     }
     let i = &body.inertia;
     let entries = [i[(0, 0)], i[(1, 1)], i[(2, 2)], i[(0, 1)], i[(0, 2)], i[(1, 2)]];
     let size = (i.trace() / 3.0).max(1e-9);
     let inertia: Vec<Coordinate> = (0..6).map(|k| Coordinate::free(INERTIA[k], entries[k])).collect();
-    // A body that nothing pushes shows only ratios: Ixx stays.
-    let first = usize::from(body.is_torque_free);
-    let columns: Vec<(usize, f64)> = (first..6).map(|k| (k, 1e-4 * size)).collect();
-    let mut h = hypothesis("body-inertia", place, inertia).screened(&columns).nominal_number();
-    h.held = (0..first).collect();
-    all.push(h);
+    // A body that nothing pushes shows only ratios: Ixx stays. One that cannot turn shows nothing, one in the plane Izz.
+    let is_shown = |k: &usize| match is_planar {
+        true => body.mask[2] && *k == 2,
+        false => *k > 0 || !body.is_torque_free,
+    };
+    let columns: Vec<(usize, f64)> = (0..6).filter(is_shown).map(|k| (k, 1e-4 * size)).collect();
+    if !columns.is_empty() {
+        let mut h = hypothesis("body-inertia", place, inertia).screened(&columns).nominal_number();
+        h.held = (0..6).filter(|k| !is_shown(k)).collect();
+        all.push(h);
+    }
     if of_arm {
         let payload = vec![
             Coordinate::level("mass", 0.0),
@@ -82,7 +92,7 @@ fn add_constant(name: &'static str, place: &str, mask: &[bool], step: f64, all: 
     }
 }
 
-fn add_tether(place: &str, all: &mut Vec<Hypothesis>) {
+fn add_tether(place: &str, mask: &[bool], all: &mut Vec<Hypothesis>) {
     let tether = vec![
         Coordinate::level("k", 0.0),
         Coordinate::free("anchor[0]", 0.0),
@@ -90,8 +100,12 @@ fn add_tether(place: &str, all: &mut Vec<Hypothesis>) {
         Coordinate::free("anchor[2]", 0.0),
         Coordinate::level("d", 0.0),
     ];
-    let steps = [(0, 1e-3), (1, 1e-4), (2, 1e-4), (3, 1e-4), (4, 1e-3)];
-    all.push(hypothesis("tether-stiffness", place, tether).encoded(Encoding::Anchored).screened(&steps));
+    let mut steps = vec![(0, 1e-3)];
+    steps.extend((0..3).filter(|k| mask[*k]).map(|k| (1 + k, 1e-4)));
+    steps.push((4, 1e-3));
+    let mut h = hypothesis("tether-stiffness", place, tether).encoded(Encoding::Anchored).screened(&steps);
+    h.held = (0..3).filter(|k| !mask[*k]).map(|k| 1 + k).collect();
+    all.push(h);
 }
 
 /// Six axes whose dyads span all symmetric tensors.
@@ -105,11 +119,13 @@ fn add_internal(body: &BodyFact, place: &str, facts: &Facts, all: &mut Vec<Hypot
     let size = body.inertia.trace() / 3.0;
     let damper = vec![Coordinate::level("i_damper", 0.0), Coordinate::log("c", 0.01, [1e-5, 10.0])];
     let rates = log_grid(1e-3, 1.0, 1.0);
-    all.push(hypothesis("internal-dissipation", place, damper).encoded(Encoding::RateOfInertia).screened_on(
+    let mut damping = hypothesis("internal-dissipation", place, damper).encoded(Encoding::RateOfInertia).screened_on(
         1,
         &rates,
         &[(vec![(0, 1.0)], 1e-3 * size)],
-    ));
+    );
+    damping.is_dear = !body.is_torque_free;
+    all.push(damping);
     let tide = vec![Coordinate::level("mean_motion", 0.0)];
     all.push(hypothesis("gravity-gradient", place, tide).encoded(Encoding::Squared).screened(&[(0, 1e-7)]));
     let grid = log_grid((6.0 / facts.duration).max(0.02), 2.0, 2.0);
@@ -181,7 +197,7 @@ fn add_waves(body: &BodyFact, place: &str, facts: &Facts, all: &mut Vec<Hypothes
             }
             h.screens.push(ScreenPoint { label: format!("f = {f:.3} Hz"), columns });
         }
-        all.push(h);
+        all.push(h.dear());
     }
 }
 

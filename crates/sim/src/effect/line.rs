@@ -109,9 +109,10 @@ impl Lines {
         (effort, slope.max(0.0))
     }
 
-    /// The command that acts on an actuator at present.
+    /// The command that acts on an actuator at present; before any was accepted, the first.
     pub fn command<'a>(&self, index: usize, state: &'a State) -> &'a Command {
-        if self.has_delay && self.lines[index].delay.is_some() { &state.acting[index] } else { &state.commands[index] }
+        let acting = state.acting.get(index).filter(|_| self.has_delay && self.lines[index].delay.is_some());
+        acting.unwrap_or(&state.commands[index])
     }
 }
 
