@@ -61,6 +61,14 @@ pub fn judge(
         let mut runs = first(&windows);
         begin_from(&mut runs, &known.segments);
         let whole = follow_with(stage, plant, set.clone(), &runs, Effort::JUDGED)?;
+        // Where the model is near, single runs that are far off stand in wrong valleys.
+        let is_near = whole.rms() < PLAUSIBLE;
+        let whole = if is_near {
+            let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED.iterations, Effort::JUDGED.share));
+            fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?
+        } else {
+            whole
+        };
         if whole.rms() < NEAR {
             stage.along(&built, &whole.segments, &mut windows);
         }
@@ -75,6 +83,8 @@ pub fn judge(
     Ok(Judgement { windowed: [before.0, after.0], whole: [before.1, after.1] })
 }
 
+/// Root mean square over whole runs up to which starts are doubted before the model is.
+const PLAUSIBLE: f64 = 8.0;
 /// Root mean square over whole runs up to which windows begin where the whole run is.
 const NEAR: f64 = 3.0;
 

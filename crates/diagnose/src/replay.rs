@@ -10,6 +10,7 @@ use crate::start::Start;
 use crate::tape::{Event, Tape};
 use scenario::measure::{Gauge, Reading as Measured, SensorModel};
 use sim::World;
+use spatial::Vec3;
 
 /// A stretch of a run, replayed from a start of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,12 +105,31 @@ fn measure(
 ) -> Result<(), DiagnoseError> {
     let events = events_in(tape, span, sensors);
     let mut replay = Replay::new(built, tape, start, span.from, pace);
-    for (i, event) in &events {
-        replay.advance_to(event.time)?;
+    let reads_contact = |event: &Event| sensors[event.reading as usize].0.reads_contact();
+    // Until when nothing is known to touch; and the next instant at which something else than a contact is read.
+    let (mut flown, mut next) = (f64::NEG_INFINITY, 0);
+    for (at, (i, event)) in events.iter().enumerate() {
         let (gauge, _) = &sensors[event.reading as usize];
-        if gauge.reads_contact() {
-            replay.world.refresh_touches();
+        if !gauge.reads_contact() {
+            replay.advance_to(event.time)?;
+            look(*i, event, &gauge.read(&replay.world));
+            continue;
         }
+        if event.time > flown {
+            next = next.max(at);
+            while events.get(next).is_some_and(|(_, e)| reads_contact(e)) {
+                next += 1;
+            }
+            let end = events.get(next).or(events.last()).map_or(event.time, |(_, e)| e.time);
+            flown = replay.fly_to(end)?;
+        }
+        // What nothing touches reads nothing: no step has to end there.
+        if event.time <= flown {
+            look(*i, event, &Measured::Vector(Vec3::zeros()));
+            continue;
+        }
+        replay.advance_to(event.time)?;
+        replay.world.refresh_touches();
         look(*i, event, &gauge.read(&replay.world));
     }
     Ok(())
@@ -165,6 +185,28 @@ impl<'a> Replay<'a> {
         Self { tape, world, feed, pace }
     }
 
+    /// Advances towards an instant as far as nothing touches, commands changed at their ticks; until when nothing did.
+    fn fly_to(&mut self, time: f64) -> Result<f64, DiagnoseError> {
+        let Self { tape, world, feed, pace } = self;
+        if pace.free <= pace.step || time - world.state().time <= SAME {
+            return Ok(f64::NEG_INFINITY);
+        }
+        loop {
+            let tick = feed.next_tick(tape);
+            let to = if tick < time - SAME { tick } else { time };
+            if !fly(world, to, pace.free).map_err(|what| gone(tape, what))? {
+                // At the instant itself something may touch already.
+                let is_free = world.touches().next().is_none();
+                return Ok(if is_free { world.state().time - 2.0 * SAME } else { f64::NEG_INFINITY });
+            }
+            if to == time {
+                return Ok(time);
+            }
+            feed.turn(tape, world.state().time);
+            feed.apply(world);
+        }
+    }
+
     /// Advances to an instant, commands changed at their ticks; whether anything touched on the way.
     fn advance_to(&mut self, time: f64) -> Result<bool, DiagnoseError> {
         let Self { tape, world, feed, pace } = self;
@@ -199,15 +241,10 @@ fn gone(tape: &Tape, error: sim::StepError) -> DiagnoseError {
 
 /// Advances to an instant in equal steps not longer than the pace, long ones as long as nothing touches; whether anything touched.
 fn advance_to(world: &mut World, time: f64, pace: Pace) -> Result<bool, sim::StepError> {
-    let parts = |left: f64, longest: f64| (left / longest - 1e-6).ceil().max(1.0) as u32;
-    let mut left = time - world.state().time;
-    while left > SAME && pace.free > pace.step {
-        let h = left / f64::from(parts(left, pace.free));
-        if !world.advance_free(h)? {
-            break;
-        }
-        left = time - world.state().time;
+    if pace.free > pace.step && fly(world, time, pace.free)? {
+        return Ok(false);
     }
+    let left = time - world.state().time;
     if left <= SAME {
         return Ok(false);
     }
@@ -219,6 +256,24 @@ fn advance_to(world: &mut World, time: f64, pace: Pace) -> Result<bool, sim::Ste
         has_touched |= world.touches().next().is_some();
     }
     Ok(has_touched)
+}
+
+/// Long steps to an instant as long as nothing touches; whether that was all the way.
+fn fly(world: &mut World, time: f64, longest: f64) -> Result<bool, sim::StepError> {
+    loop {
+        let left = time - world.state().time;
+        if left <= SAME {
+            return Ok(true);
+        }
+        if !world.advance_free(left / f64::from(parts(left, longest)))? {
+            return Ok(false);
+        }
+    }
+}
+
+/// Equal steps, none longer than the longest, that make up a stretch.
+fn parts(left: f64, longest: f64) -> u32 {
+    (left / longest - 1e-6).ceil().max(1.0) as u32
 }
 
 /// The events of a span with their numbers, in the order of the instants they tell of: late sensors read what was.

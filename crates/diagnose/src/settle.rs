@@ -7,7 +7,7 @@
 use crate::fit::Effort;
 use crate::linear::{Segment, SegmentLinear, Stage, StartColumns, eliminate, finite};
 use crate::plant::Built;
-use crate::replay::starts_along;
+use crate::replay::{Span, starts_along};
 use crate::start::{Start, freedoms};
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -21,6 +21,10 @@ const DAMPINGS: usize = 6;
 const LEAST_DAMPING: f64 = 1e-5;
 /// Mean square from which on a start is suspected to stand in a wrong valley.
 const POOR: f64 = 1.5;
+/// Shares of a segment to which its start is fitted one after the other.
+const GROWTH: [f64; 3] = [0.125, 0.25, 0.5];
+/// Scalars for each free coordinate that a share has at least.
+const ENOUGH: usize = 10;
 /// Promised fall of a segment's cost below which its start has converged, variances of noise.
 const NEXT_TO_NOTHING: f64 = 0.1;
 
@@ -113,11 +117,26 @@ impl Stage<'_> {
             if now < POOR * segment.weight * self.count(segment) as f64 {
                 return segment.clone();
             }
-            let fresh = Segment { start: segment.guess.fitted_to(built), columns: None, ..segment.clone() };
-            let (other, _) = self.fit_start(built, &fresh, &[], (iterations, share));
+            let other = self.fit_growing(built, segment, (iterations, share));
             if other.cost < now { other.segment } else { segment.clone() }
         };
         segments.par_iter().map(of).collect()
+    }
+
+    /// A start fitted to the first part of a segment, from what its samples say, then to longer and longer ones: what comes early is followed
+    /// before what comes of it is looked at.
+    fn fit_growing(&self, built: &Built, segment: &Segment, effort: (usize, f64)) -> Settled {
+        let Span { from, to } = segment.span;
+        let mut now = Segment { start: segment.guess.fitted_to(built), columns: None, ..segment.clone() };
+        let freedoms = freedoms(built, &now.start).len();
+        for share in GROWTH {
+            now.span.to = from + share * (to - from);
+            if self.count(&now) > ENOUGH * freedoms {
+                now.start = self.fit_start(built, &now, &[], effort).0.segment.start;
+            }
+        }
+        now.span.to = to;
+        self.fit_start(built, &now, &[], effort).0
     }
 
     /// The first step that lowers the cost: the full one, then more and more damped ones.
