@@ -105,19 +105,22 @@ fn measure(
 ) -> Result<(), DiagnoseError> {
     let events = events_in(tape, span, sensors);
     let mut replay = Replay::new(built, tape, start, span.from, pace);
-    let reads_contact = |event: &Event| sensors[event.reading as usize].0.reads_contact();
+    let rests = |event: &Event| sensors[event.reading as usize].0.rests_untouched();
     // Until when nothing is known to touch; and the next instant at which something else than a contact is read.
     let (mut flown, mut next) = (f64::NEG_INFINITY, 0);
     for (at, (i, event)) in events.iter().enumerate() {
         let (gauge, _) = &sensors[event.reading as usize];
-        if !gauge.reads_contact() {
+        if !rests(event) {
             replay.advance_to(event.time)?;
+            if gauge.reads_contact() {
+                replay.world.refresh_touches();
+            }
             look(*i, event, &gauge.read(&replay.world));
             continue;
         }
         if event.time > flown {
             next = next.max(at);
-            while events.get(next).is_some_and(|(_, e)| reads_contact(e)) {
+            while events.get(next).is_some_and(|(_, e)| rests(e)) {
                 next += 1;
             }
             let end = events.get(next).or(events.last()).map_or(event.time, |(_, e)| e.time);

@@ -36,10 +36,13 @@ fn add_normal(place: &str, [k, n, c]: [f64; 3], mass: f64, all: &mut Vec<Hypothe
     add_mount(place, mass, all);
 }
 
+/// Mass of a tip of which nothing is known, kg: what a scenario takes where none is given.
+const TIP_MASS: f64 = 0.8;
+
 /// Stiffnesses on which the lighter body would swing at 1 to 16 Hz.
 fn add_mount(place: &str, mass: f64, all: &mut Vec<Hypothesis>) {
     let rate = |f: f64| (std::f64::consts::TAU * f).powi(2) * mass;
-    let m = 0.01 * mass;
+    let m = TIP_MASS.min(0.02 * mass);
     let coordinates = |k: f64| {
         vec![
             Coordinate::log("k", k, [1e-2 * k, 1e3 * k]),

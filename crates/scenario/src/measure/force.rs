@@ -1,6 +1,6 @@
 //! Force sensors: what touches a part, and what a mechanism does.
 
-use sim::{Model, World};
+use sim::{EffectKind, JointEffect, JointLaw, Model, World};
 use spatial::{Pose, Vec3, Wrench};
 
 /// A force sensor of the world.
@@ -18,6 +18,8 @@ pub enum ForceGauge {
         link: usize,
         /// The sensor in that link.
         pose_ls: Pose,
+        /// The elastic mount of the part, behind which the sensor sits.
+        mount: Option<Mount>,
     },
     /// What a mechanism does to its side b (or a), W axes, moment about the point of action.
     Mechanism {
@@ -28,6 +30,65 @@ pub enum ForceGauge {
     },
 }
 
+/// A part on an elastic mount: what reaches a sensor behind it is k u + d u̇, and the moment about the tip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mount {
+    /// First of the tip's three sliding coordinates, an index into the world's `v`.
+    pub coordinate: usize,
+    /// Spring, N/m.
+    pub stiffness: f64,
+    /// Damper, N·s/m.
+    pub damping: f64,
+    /// Vehicle of the tip.
+    pub vehicle: usize,
+    /// The tip's link.
+    pub link: usize,
+}
+
+impl Mount {
+    /// The mount that carries a global body; none where it is not on one.
+    pub(super) fn of(model: &Model, body: usize) -> Option<Self> {
+        let (vehicle, own) = model
+            .vehicles
+            .iter()
+            .enumerate()
+            .find(|(_, v)| (v.body0..v.body0 + v.tree.bodies.len()).contains(&body))?;
+        let body = body - own.body0;
+        let link = own.tree.links.iter().position(|l| l.body == body)?;
+        let name = |axis: &str| format!("{}_{axis}", own.tree.links[link].name);
+        let [first, last] = ["x", "z"].map(|axis| own.tree.joint(&name(axis)));
+        let (first, last) = (first?, last?);
+        if last != first + 2 || body != last + 1 {
+            return None;
+        }
+        let coordinate = own.v0 + own.tree.joints[first].v_index;
+        let laws = model.effects().iter().filter_map(|e| match e.kind {
+            EffectKind::Joint(JointEffect { coordinate: c, law }) if c == coordinate => Some(law),
+            _ => None,
+        });
+        let (mut stiffness, mut damping) = (None, 0.0);
+        for law in laws {
+            match law {
+                JointLaw::Cable { stiffness: k, .. } => stiffness = Some(k),
+                JointLaw::Viscous { damping: d } => damping += d,
+                _ => {}
+            }
+        }
+        Some(Self { coordinate, stiffness: stiffness?, damping, vehicle, link })
+    }
+
+    /// What the mount does to the body that carries it, W axes, moment about `origin`; `touch` is what touches the tip, about its origin.
+    fn calc_wrench(&self, world: &World, touch: &Wrench, origin: &Vec3) -> Wrench {
+        let (frame, state) = (world.link_frame(self.vehicle, self.link), world.state());
+        let along = |k: usize| {
+            let i = self.coordinate + k;
+            self.stiffness * state.q[world.model().coordinates[i].q_index] + self.damping * state.v[i]
+        };
+        let force = frame.rot * Vec3::new(along(0), along(1), along(2));
+        Wrench::new(touch.moment + (frame.pos - origin).cross(&force), force)
+    }
+}
+
 impl ForceGauge {
     /// Force and moment, in the axes and about the origin of the sensor.
     pub(super) fn calc_wrench(&self, world: &World) -> Wrench {
@@ -35,10 +96,14 @@ impl ForceGauge {
             Self::Mechanism { index, sign } => {
                 world.mechanisms().nth(*index).map_or(Wrench::default(), |m| m.wrench_w * *sign)
             }
-            Self::Contact { body, collider, vehicle, link, pose_ls } => {
+            Self::Contact { body, collider, vehicle, link, pose_ls, mount } => {
                 let frame = world.link_frame(*vehicle, *link);
                 let origin = frame.point(&pose_ls.translation.vector);
-                let sum = sum_contact(world, (*body, *collider), &origin);
+                let about = |point: &Vec3| sum_contact(world, (*body, *collider), point);
+                let sum = mount.map_or_else(
+                    || about(&origin),
+                    |m| m.calc_wrench(world, &about(&world.link_frame(m.vehicle, m.link).pos), &origin),
+                );
                 let into = |v: &Vec3| pose_ls.rotation.inverse() * frame.rot.tr_mul(v);
                 Wrench::new(into(&sum.moment), into(&sum.force))
             }

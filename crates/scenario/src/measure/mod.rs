@@ -128,6 +128,12 @@ impl Gauge {
         let of_contact = |gauge: &ForceGauge| matches!(gauge, ForceGauge::Contact { .. });
         matches!(&self.quantity, Quantity::Force(g) | Quantity::Torque(g) if of_contact(g))
     }
+
+    /// Whether it reads zero as long as nothing touches: a force sensor right behind its part, not behind an elastic mount.
+    pub fn rests_untouched(&self) -> bool {
+        let is_bare = |gauge: &ForceGauge| matches!(gauge, ForceGauge::Contact { mount: None, .. });
+        matches!(&self.quantity, Quantity::Force(g) | Quantity::Torque(g) if is_bare(g))
+    }
 }
 
 fn read_command(world: &World, actuator: usize) -> f64 {

@@ -1,7 +1,7 @@
 //! Names of channels → quantities of a model.
 
 use super::Quantity;
-use super::force::ForceGauge;
+use super::force::{ForceGauge, Mount};
 use crate::spec::{MechanismEnd, Scenario, SensorKind};
 use crate::spelling::hint_for_name;
 use multibody::{Joint, JointKind};
@@ -97,7 +97,8 @@ fn force(scenario: &Scenario, model: &Model, name: &str) -> Result<ForceGauge, S
         SensorKind::ContactForce { part, link: on, pose, .. } => {
             let (vehicle, link) = link(model, on)?;
             let (body, collider) = touched(model, part)?;
-            Ok(ForceGauge::Contact { body, collider, vehicle, link, pose_ls: pose.pose() })
+            let mount = Mount::of(model, body);
+            Ok(ForceGauge::Contact { body, collider, vehicle, link, pose_ls: pose.pose(), mount })
         }
         SensorKind::MechanismForce { mechanism, on, .. } => {
             let hint = || hint_for_name(mechanism, model.mechanisms.iter().map(|m| m.name.as_str()));
