@@ -7,6 +7,7 @@
 //! of [`summary_text`] and the scenario of [`patched_toml`]. [`score`] judges diagnoses against answer keys.
 
 pub mod catalogue;
+mod condition;
 mod curves;
 pub mod diagnosis;
 pub mod error;

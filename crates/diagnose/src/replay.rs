@@ -325,3 +325,61 @@ impl<'a> Feed<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plant::Plant;
+    use crate::reading::Reading;
+    use record::Role;
+    use spatial::Twist;
+
+    /// Two channels of a chaser that meets its target after 0.3 s.
+    fn docking() -> (Built, Tape, Start) {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/rigs/dock-impact.toml");
+        let mut plant = Plant::new(scenario::load(file.as_ref(), &[]).expect("the scenario is in the repository"));
+        plant.channels = vec!["body.chaser.position".to_owned(), "sensor.probe.force".to_owned()];
+        let built = plant.build(&[]).expect("it builds");
+        let reading = |channel: &str, rate: f64| {
+            let (gauge, _) = built.sensor(channel).expect("it is measured");
+            let times: Vec<f64> = (0..=(0.7 * rate) as usize).map(|i| i as f64 / rate).collect();
+            let values = vec![Value::Vector(Vec3::zeros()); times.len()];
+            let channel = channel.to_owned();
+            Reading { channel, quantity: gauge.quantity(), axes: vec![0, 1, 2], sigma: 1.0, times, values }
+        };
+        let readings = vec![reading("body.chaser.position", 250.0), reading("sensor.probe.force", 2000.0)];
+        let tape = Tape::assemble(("docking", Role::Fit), Vec::new(), readings);
+        let mut start = Start::nominal(&built);
+        start.bases[0].translation.vector.x = -2.115;
+        start.twists = vec![Twist::new(Vec3::zeros(), Vec3::new(0.085, 1.7e-3, 8.5e-4)), Twist::default()];
+        (built, tape, start)
+    }
+
+    #[test]
+    fn a_flight_that_no_force_sensor_cuts_reads_the_same() {
+        let (built, tape, start) = docking();
+        let span = Span { from: 0.0, to: 0.7 };
+        let read = |free: f64| readings(&built, &tape, &start, span, Pace { step: 2.5e-4, free }).expect("it runs");
+        let (short, long) = (read(2.5e-4), read(16e-3));
+        let norm = |m: &Measured| if let Measured::Vector(v) = m { v.norm() } else { f64::NAN };
+        let forces = |all: &[Measured]| {
+            let of_force = all.iter().zip(&tape.events).filter(|(_, e)| e.reading == 1);
+            of_force.map(|(m, _)| norm(m)).collect::<Vec<f64>>()
+        };
+        let (a, b) = (forces(&short), forces(&long));
+        let peak = a.iter().copied().fold(0.0, f64::max);
+        assert!(peak > 100.0, "the probe touched: {peak} N");
+        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-5 * peak && (*a == 0.0) == (*b == 0.0)));
+        assert!(a[..100].iter().all(|f| *f == 0.0), "it flew before");
+    }
+
+    #[test]
+    fn touches_are_told_by_the_stretches_between_samples() {
+        let (built, tape, start) = docking();
+        let span = Span { from: 0.0, to: 0.7 };
+        let touches = touches_in(&built, &tape, &start, span, Pace { step: 2.5e-4, free: 16e-3 });
+        assert!(touches.len() == 1 && touches[0].from > 0.1 && touches[0].to < 0.7, "{touches:?}");
+        let before = Span { from: 0.0, to: touches[0].from };
+        assert!(touches_in(&built, &tape, &start, before, Pace { step: 2.5e-4, free: 2.5e-4 }).is_empty());
+    }
+}

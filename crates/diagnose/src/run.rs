@@ -43,8 +43,11 @@ pub(crate) struct Findings {
 
 /// Limits of the search.
 const LIMITS: Limits = Limits { effects: 3, refits: 4, sigmas: 4.0 };
+/// Error (units of noise) and share of the mismatch up to which what a corrected model leaves may be the errors of its own steps and starts.
+const RIGHT: f64 = 1.1;
+const NEXT_TO_NOTHING: f64 = 0.01;
 /// Error (units of noise) up to which a corrected model that leaves something is worth its name.
-const NEAR: f64 = 5.0;
+const NEAR: f64 = 1.5;
 /// Share of the mismatch that may be left for a verdict of "partly explained".
 const PARTLY: f64 = 0.1;
 
@@ -202,7 +205,11 @@ fn verdict(judgement: &Judgement, found: &Fit, follows: bool) -> Verdict {
     }
     let [before, after] = judgement.rms(!follows, |run| found.segments.iter().any(|s| s.run == run));
     let left = (after * after - 1.0) / (before * before - 1.0).max(1e-9);
-    if !found.set.members.is_empty() && left < PARTLY && found.rms() < NEAR {
+    if found.set.members.is_empty() {
+        Verdict::Unknown
+    } else if left < NEXT_TO_NOTHING && after < RIGHT {
+        Verdict::Explained
+    } else if left < PARTLY && after < NEAR {
         Verdict::PartlyExplained
     } else {
         Verdict::Unknown

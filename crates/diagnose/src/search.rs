@@ -67,7 +67,7 @@ pub fn criterion(fit: &Fit) -> f64 {
 }
 
 /// Excess per scalar that data sheets' noise figures do not vouch for.
-const LEAST: f64 = 0.02;
+const LEAST: f64 = 0.03;
 
 /// Whether the cost is more than noise leaves.
 pub fn is_significant(fit: &Fit, limits: &Limits) -> bool {

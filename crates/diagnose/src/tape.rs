@@ -105,7 +105,7 @@ impl Tape {
         Self { index: self.index, ..thinned }
     }
 
-    fn assemble((file, role): (&str, Role), commands: Vec<CommandTape>, readings: Vec<Reading>) -> Self {
+    pub(crate) fn assemble((file, role): (&str, Role), commands: Vec<CommandTape>, readings: Vec<Reading>) -> Self {
         let mut events: Vec<Event> = Vec::new();
         for (r, reading) in readings.iter().enumerate() {
             let samples = reading.times.iter().enumerate();

@@ -1,5 +1,6 @@
 //! From findings to the diagnosis and its evidence.
 
+use crate::condition;
 use crate::diagnosis::{
     BeforeAfter, Diagnosis, Errors, FORMAT, Found, Located as LocatedPlace, Rival, Role, RunError, StdErr, Verdict,
 };
@@ -119,13 +120,13 @@ fn rivals(findings: &Findings, chosen: &crate::hypothesis::Hypothesis) -> Vec<Ri
 }
 
 fn located(findings: &Findings, stage: &Stage<'_>) -> Vec<LocatedPlace> {
-    let end = stage.tapes.iter().map(|t| t.span.1).fold(0.0, f64::max);
-    let place = |name: String, share: f64, condition: &str| LocatedPlace {
-        place: name,
-        share,
-        from_s: 0.0,
-        to_s: end,
-        condition: condition.to_owned(),
+    let (from_s, to_s) = condition::when(stage, &findings.nominal);
+    let place = |name: String, share: f64, condition: &str| {
+        let is_unknown = findings.verdict == Verdict::Unknown;
+        let depends = is_unknown.then(|| condition::dependence(stage, &findings.nominal, &findings.located, &name));
+        let depends = depends.flatten();
+        let condition = depends.map_or_else(|| condition.to_owned(), |on| format!("{condition}; {on}"));
+        LocatedPlace { place: name, share, from_s, to_s, condition }
     };
     let by_force = || {
         let all = &findings.located;

@@ -96,3 +96,30 @@ fn a_mount_changes_nothing_at_infinite_stiffness_and_keeps_momentum() {
     assert!(change.force.norm() < 1e-11 && change.moment.norm() < 1e-11, "{change:?}");
     assert!((soft.bases[0].translation.vector - nominal.bases[0].translation.vector).norm() > 1e-4);
 }
+
+/// A sensor behind a mount reads what reaches it: spring and damper, about its own origin, with or without a touch.
+#[test]
+fn a_force_sensor_behind_a_mount_reads_spring_and_damper() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/rigs/dock-impact.toml");
+    let mut spec = scenario::load(file.as_ref(), &[]).unwrap();
+    let params = [("k", ParamValue::Number(1.6e5)), ("d", ParamValue::Number(260.0))];
+    spec.effects = vec![effect("mount-compliance", params)];
+    let mut mission = scenario::build(&spec).unwrap();
+    let model = std::sync::Arc::clone(mission.world.model());
+    let gauge = |channel: &str| scenario::measure::Gauge::resolve(&spec, &model, channel).unwrap();
+    let (force, torque) = (gauge("sensor.probe.force"), gauge("sensor.probe.torque"));
+    assert!(force.reads_contact() && !force.rests_untouched(), "it rings after the touch");
+    let state = mission.world.state_mut();
+    state.q[..3].copy_from_slice(&[1e-3, -2e-3, 0.0]);
+    state.v[..3].copy_from_slice(&[0.1, 0.0, 0.2]);
+    mission.world.refresh_touches();
+    let vector = |reading| match reading {
+        scenario::measure::Reading::Vector(v) => v,
+        other => panic!("{other:?}"),
+    };
+    let expected = Vec3::new(160.0 + 26.0, -320.0, 52.0);
+    assert!((vector(force.read(&mission.world)) - expected).norm() < 1e-9);
+    // The tip stands 0.3 m ahead of the sensor.
+    let arm = Vec3::new(0.3 + 1e-3, -2e-3, 0.0);
+    assert!((vector(torque.read(&mission.world)) - arm.cross(&expected)).norm() < 1e-9);
+}

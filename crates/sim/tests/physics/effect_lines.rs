@@ -146,3 +146,19 @@ fn a_step_of_the_models_length_is_a_step() {
         assert!((plain.state().time - by.state().time).abs() < 1e-15);
     }
 }
+
+/// A start may ask for the rest of the memory before any command was accepted.
+#[test]
+fn a_late_thruster_settles_before_its_first_command() {
+    for integrator in ALL {
+        let mut spec = spec(vec![(block(2.0, Vec3::repeat(0.1)), Base::Free)], &Setup::new(integrator));
+        let kind = ActuatorKind::Thruster { body: 0, position: Vec3::zeros(), direction: Vec3::x(), max_force: 0.5 };
+        spec.actuators = vec![Actuator { name: "jet".to_owned(), kind }];
+        let laws = [LineLaw::Lag(0.01), LineLaw::Delay(0.0042)];
+        spec.effects = laws.iter().map(|law| Effect { name: format!("{law:?}"), kind: line(*law) }).collect();
+        let mut world = world(spec);
+        world.commands_mut()[0] = effort(1.0);
+        world.settle_effects();
+        assert_eq!(world.state().effects, [0.5], "{integrator:?}: the first command acts as if it always had");
+    }
+}
