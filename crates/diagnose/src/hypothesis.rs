@@ -173,6 +173,11 @@ impl Hypothesis {
         x.iter().zip(&self.coordinates).map(|(x, c)| x.clamp(c.bounds[0], c.bounds[1])).collect()
     }
 
+    /// Whether a coordinate stands at one of its bounds, zero aside.
+    pub fn is_at_bound(&self, x: &[f64]) -> bool {
+        x.iter().zip(&self.coordinates).any(|(x, c)| *x != 0.0 && c.bounds.contains(x))
+    }
+
     /// The effect at some coordinates.
     pub fn effect(&self, x: &[f64]) -> Effect {
         let mut params: BTreeMap<String, ParamValue> =

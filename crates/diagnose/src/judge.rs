@@ -4,7 +4,7 @@ use crate::error::DiagnoseError;
 use crate::fit::{Effort, Fit, fit};
 use crate::linear::{Segment, Stage};
 use crate::plant::Plant;
-use crate::search::follow_with;
+use crate::standing::follow_with;
 use crate::stretches::{cut, joined};
 use crate::tape::Tape;
 use nalgebra::DVector;

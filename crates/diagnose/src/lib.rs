@@ -32,6 +32,7 @@ pub mod score;
 pub mod screen;
 pub mod search;
 mod settle;
+pub mod standing;
 pub mod start;
 mod stretches;
 mod summary;

@@ -7,7 +7,7 @@ use crate::model::{Base, Model, Vehicle};
 use crate::state::State;
 use contact::{ContactPoint, Detector};
 use multibody::{Dynamics, Kinematics, calc_locked_inertia, calc_momentum};
-use spatial::{Frame, SpatialMatrix, Twist, Vec3, Wrench, nalgebra};
+use spatial::{Frame, SpatialMatrix, Twist, Vec3, Wrench};
 
 /// Scratch of one world; holds nothing that a result depends on.
 #[derive(Debug)]
@@ -179,22 +179,36 @@ fn calc_base_twist(vehicle: &Vehicle, kin: &Kinematics, momentum: &Wrench, carri
     }
 }
 
+/// The twist in the free slots whose momentum there is `h`: UᵀU of the free rows alone, which are few.
 fn solve_masked(locked: &SpatialMatrix, h: &Wrench, mask: &[bool; 6]) -> Twist {
-    let mut a = nalgebra::Matrix6::<f64>::identity();
-    let mut b = nalgebra::Vector6::<f64>::zeros();
+    let entry = |i: usize, j: usize| match (i < 3, j < 3) {
+        (true, true) => locked.ma[(i, j)],
+        (true, false) => locked.ml[(i, j - 3)],
+        (false, true) => locked.fa[(i - 3, j)],
+        (false, false) => locked.fl[(i - 3, j - 3)],
+    };
+    let (mut free, mut n) = ([0; 6], 0);
     for i in (0..6).filter(|i| mask[*i]) {
-        b[i] = if i < 3 { h.moment[i] } else { h.force[i - 3] };
-        for j in (0..6).filter(|j| mask[*j]) {
-            a[(i, j)] = match (i < 3, j < 3) {
-                (true, true) => locked.ma[(i, j)],
-                (true, false) => locked.ml[(i, j - 3)],
-                (false, true) => locked.fa[(i - 3, j)],
-                (false, false) => locked.fl[(i - 3, j - 3)],
-            };
-        }
+        (free[n], n) = (i, n + 1);
     }
-    let x = a.cholesky().map_or(nalgebra::Vector6::repeat(f64::NAN), |c| c.solve(&b));
-    Twist::new(x.fixed_rows::<3>(0).into_owned(), x.fixed_rows::<3>(3).into_owned())
+    let (mut u, mut x) = ([[0.0; 6]; 6], [0.0; 6]);
+    for i in 0..n {
+        let own = if free[i] < 3 { h.moment[free[i]] } else { h.force[free[i] - 3] };
+        let above = |u: &[[f64; 6]; 6], j: usize| (0..i).map(|k| u[k][i] * u[k][j]).sum::<f64>();
+        // A matrix that is not positive definite gives NaN, which the step reports.
+        u[i][i] = (entry(free[i], free[i]) - above(&u, i)).sqrt();
+        for j in i + 1..n {
+            u[i][j] = (entry(free[i], free[j]) - above(&u, j)) / u[i][i];
+        }
+        x[i] = (own - (0..i).map(|k| u[k][i] * x[k]).sum::<f64>()) / u[i][i];
+    }
+    let mut twist = [0.0; 6];
+    for i in (0..n).rev() {
+        x[i] = (x[i] - (i + 1..n).map(|j| u[i][j] * x[j]).sum::<f64>()) / u[i][i];
+        twist[free[i]] = x[i];
+    }
+    let [wx, wy, wz, vx, vy, vz] = twist;
+    Twist::new(Vec3::new(wx, wy, wz), Vec3::new(vx, vy, vz))
 }
 
 /// Momentum (about W's origin, in the slots that the base's guide leaves free) of a vehicle that moves as `kin` says.

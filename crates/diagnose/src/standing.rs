@@ -1,0 +1,210 @@
+//! A set of effects as it stands: in windows, in longer ones, and over whole runs.
+//!
+//! Windows are convex enough to begin from, whole runs have the power and are what is judged. Where the nominal model does not follow windows of
+//! the length in which predictions are judged, shorter ones come first, and a set that follows these climbs to longer ones (continuation
+//! over the length, as in multiple shooting: Bock and Plitt 1984).
+
+use crate::error::DiagnoseError;
+use crate::fit::{EffectSet, Effort, Fit, fit};
+use crate::hypothesis::Hypothesis;
+use crate::linear::{Segment, Stage};
+use crate::plant::Plant;
+use crate::stretches::STEEP;
+use std::sync::Arc;
+
+/// Schwarz's criterion.
+pub fn criterion(fit: &Fit) -> f64 {
+    fit.cost + fit.set.slots().len() as f64 * (fit.count as f64).ln()
+}
+
+/// A set of effects, fitted at both lengths.
+#[derive(Clone, Debug)]
+pub struct Standing {
+    /// In some windows.
+    pub windows: Fit,
+    /// Over whole runs.
+    pub whole: Fit,
+    /// Segments of the lengths between, shortest first; none where windows lead to whole runs at once.
+    pub rungs: Vec<Vec<Segment>>,
+    /// Root mean square up to which whole runs follow far enough to be judged by.
+    pub reach: f64,
+}
+
+impl Standing {
+    /// One set at both lengths.
+    pub fn new(stage: &Stage<'_>, windows: Fit, whole: Fit, rungs: Vec<Vec<Segment>>) -> Self {
+        let reach = if rungs.is_empty() { DIVERGED } else { STEEP };
+        Self { windows, whole, rungs, reach }.weighted(stage)
+    }
+
+    /// The same with weights: where windows are only there to begin from, or are far off yet, none of them counts for more than all that is in it.
+    pub(crate) fn weighted(mut self, stage: &Stage<'_>) -> Self {
+        for segment in &mut self.windows.segments {
+            if segment.weight != 1.0 {
+                (segment.columns, segment.weight) = (None, 1.0);
+            }
+        }
+        let is_near = stage.cost(&self.windows.built, &self.windows.segments) < NEAR * NEAR * self.windows.count as f64;
+        if self.follows() || !is_near && self.reach <= STEEP {
+            for segment in &mut self.windows.segments {
+                segment.columns = None;
+                let r = stage.residuals(&self.windows.built, segment);
+                segment.weight = (r.len() as f64 / r.norm_squared()).min(1.0);
+            }
+        }
+        self.windows.cost = stage.cost(&self.windows.built, &self.windows.segments);
+        (self.windows.count, self.windows.noise) = stage.noise(&self.windows.segments);
+        self
+    }
+
+    /// The fit that judges: whole runs where these follow, else the windows.
+    pub fn judge(&self) -> &Fit {
+        if self.follows() { &self.whole } else { &self.windows }
+    }
+
+    /// Whether whole runs follow the model far enough to be judged by.
+    pub fn follows(&self) -> bool {
+        self.whole.rms() < self.reach
+    }
+
+    /// The same with another set, its parameters fitted at the length that judges.
+    pub(crate) fn refit(
+        &self,
+        stage: &Stage<'_>,
+        plant: &Plant,
+        set: EffectSet,
+        effort: Effort,
+    ) -> Result<Self, DiagnoseError> {
+        if self.follows() {
+            let whole = fit_in_turns(stage, plant, set, self.whole.segments.clone(), effort)?;
+            let windows = fit(stage, plant, whole.set.frozen(), self.windows.segments.clone(), Effort::STARTS)?;
+            let windows = Fit { set: whole.set.clone(), ..windows };
+            return Ok(Self { windows, whole, ..self.clone() }.weighted(stage));
+        }
+        let windows = fit_in_turns(stage, plant, set, self.windows.segments.clone(), effort)?;
+        self.climbed(stage, plant, windows, effort)
+    }
+
+    /// The standing of a set that was fitted in windows, in the longest windows that follow it, and over whole runs where these do.
+    pub(crate) fn climbed(
+        &self,
+        stage: &Stage<'_>,
+        plant: &Plant,
+        mut windows: Fit,
+        effort: Effort,
+    ) -> Result<Self, DiagnoseError> {
+        let mut rungs = self.rungs.clone();
+        while let Some(rung) = rungs.first() {
+            let settled = fit(stage, plant, windows.set.frozen(), rung.clone(), Effort::STARTS)?;
+            let tried = fit_in_turns(stage, plant, windows.set.clone(), settled.segments, effort)?;
+            let found = tried.set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
+            stage.work.watch.step(&format!("  windows of {:.3} s: error {:.3}, {found}", length_of(rung), tried.rms()));
+            if tried.rms() > STEEP {
+                break;
+            }
+            windows = tried;
+            rungs.remove(0);
+        }
+        let set = windows.set.clone();
+        let segments = begun_as(&self.whole.segments, &windows.segments);
+        // Where windows had to be shortened, whole runs are far off until the longest windows follow well.
+        let is_far = self.reach <= STEEP && (!rungs.is_empty() || windows.rms() > NEAR);
+        let whole = match is_far {
+            true => Fit { segments, set: set.clone(), built: windows.built.clone(), ..self.whole.clone() },
+            false => Fit { set: set.clone(), ..follow(stage, plant, set.frozen(), &segments)? },
+        };
+        let standing = Self { windows, whole, rungs, reach: self.reach };
+        // They begin to follow: from now on they judge.
+        if standing.follows() { standing.refit(stage, plant, set, effort) } else { Ok(standing) }
+    }
+
+    /// Whether this standing is better than another: whole runs that follow, longer windows that do, then the criterion.
+    pub(crate) fn is_better(&self, other: &Self) -> bool {
+        match (self.follows(), other.follows()) {
+            (true, false) => true,
+            (false, true) => false,
+            (false, false) if self.rungs.len() != other.rungs.len() => self.rungs.len() < other.rungs.len(),
+            _ => criterion(self.judge()) < criterion(other.judge()),
+        }
+    }
+
+    /// Whether what another standing is judged by is the same.
+    pub(crate) fn is_comparable(&self, other: &Self) -> bool {
+        self.follows() == other.follows() && (self.follows() || self.rungs.len() == other.rungs.len())
+    }
+}
+
+/// Whole runs with their starts fitted, where these are near enough for that.
+pub fn follow(stage: &Stage<'_>, plant: &Plant, set: EffectSet, segments: &[Segment]) -> Result<Fit, DiagnoseError> {
+    follow_with(stage, plant, set, segments, Effort::STARTS)
+}
+
+/// The same with an effort of its own.
+pub fn follow_with(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    set: EffectSet,
+    segments: &[Segment],
+    effort: Effort,
+) -> Result<Fit, DiagnoseError> {
+    let none = Effort { iterations: 0, ..effort };
+    let first = fit(stage, plant, set, segments.to_vec(), none)?;
+    if first.rms() > HOPELESS {
+        return Ok(Fit { segments: segments.to_vec(), ..first });
+    }
+    fit(stage, plant, first.set, first.segments, effort)
+}
+
+/// Whole runs that may begin as the longest window does with which they begin.
+fn begun_as(whole: &[Segment], windows: &[Segment]) -> Vec<Segment> {
+    let of = |run: &Segment| {
+        let first = windows.iter().filter(|w| w.run == run.run && w.span.from == run.span.from);
+        let longest = first.max_by(|a, b| a.span.to.total_cmp(&b.span.to));
+        let guess = longest.map_or_else(|| Arc::clone(&run.guess), |w| Arc::new(w.start.clone()));
+        Segment { guess, ..run.clone() }
+    };
+    whole.iter().map(of).collect()
+}
+
+/// A fit whose starts are begun anew as long as that finds lower valleys for some.
+fn fit_in_turns(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    set: EffectSet,
+    segments: Vec<Segment>,
+    effort: Effort,
+) -> Result<Fit, DiagnoseError> {
+    let mut now = fit(stage, plant, set, segments, effort)?;
+    for _ in 0..TURNS {
+        let segments = stage.begun_anew(&now.built, &now.segments, (Effort::STARTS.iterations, Effort::STARTS.share));
+        let is_lower = stage.cost(&now.built, &segments) < LOWER * now.cost;
+        if !is_lower {
+            break;
+        }
+        let next = fit(stage, plant, now.set.clone(), segments, effort)?;
+        stage.work.watch.step(&format!("  begun anew: error {:.3} → {:.3}", now.rms(), next.rms()));
+        now = next;
+    }
+    Ok(now)
+}
+
+/// Most times that starts are begun anew.
+const TURNS: usize = 3;
+/// Share of the cost below which that must bring it to be worth another fit.
+const LOWER: f64 = 0.98;
+
+fn length_of(segments: &[Segment]) -> f64 {
+    segments.first().map_or(0.0, |s| s.span.to - s.span.from)
+}
+
+/// Root mean square in windows from which on each counts for what is in it.
+const NEAR: f64 = 3.0;
+/// Root mean square over whole runs from the starts of windows beyond which no start makes them follow.
+const HOPELESS: f64 = 3000.0;
+/// Root mean square over whole runs beyond which they do not follow the model at all, and windows judge.
+const DIVERGED: f64 = 300.0;
+
+/// Parameters in a line.
+pub(crate) fn told(h: &Hypothesis, x: &[f64]) -> String {
+    h.decode(x).iter().map(|(key, value)| format!("{key} {value:.4e}")).collect::<Vec<_>>().join(", ")
+}
