@@ -130,7 +130,14 @@ fn located(findings: &Findings, stage: &Stage<'_>) -> Vec<LocatedPlace> {
     };
     let by_force = || {
         let all = &findings.located;
-        all.ranked().into_iter().take(4).map(|p| (all.places[p].name.clone(), all.share(p))).collect::<Vec<_>>()
+        let mut places: Vec<(String, f64)> =
+            all.ranked().into_iter().take(4).map(|p| (all.places[p].name.clone(), all.share(p))).collect();
+        // A free force on a body fits what a contact does to it as well: where both do, the place that the search preferred comes first.
+        let preferred = |name: &str| findings.attempts.iter().any(|a| a.kept && a.place == name);
+        places.sort_by(|a, b| {
+            (b.1 + if preferred(&b.0) { TIE } else { 0.0 }).total_cmp(&(a.1 + if preferred(&a.0) { TIE } else { 0.0 }))
+        });
+        places
     };
     match findings.verdict {
         Verdict::NoMismatch => Vec::new(),
@@ -148,6 +155,9 @@ fn located(findings: &Findings, stage: &Stage<'_>) -> Vec<LocatedPlace> {
         }
     }
 }
+
+/// Difference of shares that does not tell places apart.
+const TIE: f64 = 0.1;
 
 fn condition_of(place: &str) -> &'static str {
     if place.starts_with("contact:") { "in contact" } else { "always" }

@@ -174,3 +174,45 @@ fn a_fault_of_the_gyro_is_no_physics() {
     check(&diagnosis, "sensor-bias", place);
     assert!((value(&diagnosis, "bias", 0) - 4e-4).abs() < 4e-5);
 }
+
+/// A recording whose files were changed line by line, header first.
+fn changed(change: impl Fn(usize, &str) -> String) -> (tempfile::TempDir, RecordingSet) {
+    let folder = tempfile::tempdir().unwrap();
+    record_tumbler(&[], folder.path());
+    for run in 0..3 {
+        let path = folder.path().join(format!("run-{run}.csv"));
+        let text = std::fs::read_to_string(&path).unwrap();
+        let lines: Vec<String> = text.lines().enumerate().map(|(i, line)| change(i, line)).collect();
+        std::fs::write(&path, lines.join("\n") + "\n").unwrap();
+    }
+    let set = RecordingSet::load(folder.path()).unwrap();
+    (folder, set)
+}
+
+/// The columns from `first` to `last` of a line, times a factor.
+fn scaled(line: &str, (first, last): (usize, usize), factor: f64) -> String {
+    let of = |(k, cell): (usize, &str)| match cell.parse::<f64>() {
+        Ok(x) if (first..=last).contains(&k) => format!("{:.6}", factor * x),
+        _ => cell.to_owned(),
+    };
+    line.split(',').enumerate().map(of).collect::<Vec<_>>().join(",")
+}
+
+#[test]
+fn a_recording_that_cannot_belong_to_the_scenario_is_said_to_be_foreign() {
+    let refusal = |set: &RecordingSet| diagnose::diagnose(tumbler().scenario, set, &()).err().map(|e| e.to_string());
+    let cases: [(&str, (usize, usize), f64); 4] = [
+        ("unit = \"ms\"", (0, 0), 1000.0),
+        ("deg/s", (5, 7), 57.295_779_5),
+        ("mirror image", (6, 6), -1.0),
+        ("is not the derivative", (3, 3), -1.0),
+    ];
+    for (said, columns, factor) in cases {
+        let (_folder, set) = changed(|i, line| if i == 0 { line.to_owned() } else { scaled(line, columns, factor) });
+        let refused = refusal(&set).unwrap_or_default();
+        assert!(refused.contains("cannot belong") && refused.contains(said), "columns {columns:?}: {refused:?}");
+    }
+    let (_folder, set) = changed(|_, line| line.replace("body.target", "body.chaser"));
+    let refused = refusal(&set).unwrap_or_default();
+    assert!(refused.contains("chaser") && refused.contains("run-0.csv"), "{refused:?}");
+}
