@@ -6,7 +6,7 @@
 
 use crate::fit::Fit;
 use crate::linear::Stage;
-use crate::locate::Located;
+use crate::locate::{Located, WindowForce};
 use crate::reading::{Reading, Value};
 use crate::replay::Span;
 use crate::tape::Tape;
@@ -38,23 +38,18 @@ pub(crate) fn when(stage: &Stage<'_>, nominal: &Fit) -> (f64, f64) {
 /// What a place's missing force depends on, in words with the share of its variance; none where nothing stands out.
 pub(crate) fn dependence(stage: &Stage<'_>, nominal: &Fit, located: &Located, place: &str) -> Option<String> {
     let at = located.places.iter().position(|p| p.name == place)?;
-    let mut best: Option<(f64, String)> = None;
-    let names = features(&stage.tapes[nominal.segments.first()?.run], nominal.segments.first()?.span);
-    for (k, (name, _)) in names.iter().enumerate() {
-        let mut points = Vec::new();
-        for (segment, windows) in nominal.segments.iter().zip(&located.windows) {
-            let (estimate, error) = (windows[at].estimate.first()?, windows[at].error.first()?);
-            let feature = features(&stage.tapes[segment.run], segment.span).get(k)?.1;
-            if *error > 0.0 && error.is_finite() && feature.is_finite() {
-                points.push((feature, *estimate, error.powi(-2)));
-            }
-        }
-        let share = calc_share(&mut points);
-        if best.as_ref().is_none_or(|b| share > b.0) {
-            best = Some((share, name.clone()));
-        }
-    }
-    best.filter(|b| b.0 > NAMED).map(|(share, name)| format!("changes with {name} (R² {share:.2})"))
+    let all: Vec<Vec<(String, f64)>> = nominal.segments.iter().map(|s| features(&stage.tapes[s.run], s.span)).collect();
+    let share_of = |k: usize| {
+        let point = |(features, windows): (&Vec<(String, f64)>, &Vec<WindowForce>)| {
+            let (force, (_, feature)) = (&windows[at], features.get(k)?);
+            let (estimate, error) = (*force.estimate.first()?, *force.error.first()?);
+            (error > 0.0 && feature.is_finite()).then_some((*feature, estimate, error.powi(-2)))
+        };
+        calc_share(&mut all.iter().zip(&located.windows).filter_map(point).collect::<Vec<_>>())
+    };
+    let names = all.first()?.iter().map(|(name, _)| name);
+    let (share, name) = names.enumerate().map(|(k, name)| (share_of(k), name)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (share > NAMED).then(|| format!("changes with {name} (R² {share:.2})"))
 }
 
 /// Weighted share of the variance that a straight line explains. No window outvotes all others: weights are bounded by ten times their median.
@@ -83,10 +78,13 @@ fn features(tape: &Tape, span: Span) -> Vec<(String, f64)> {
             continue;
         }
         let mean = mean_of(reading, span);
-        for &axis in &reading.axes {
-            let name = reading.component(reading.axes.iter().position(|a| *a == axis).unwrap_or(0));
-            all.push((name.clone(), mean.map_or(f64::NAN, |m| m[axis])));
-        }
+        all.extend(
+            reading
+                .axes
+                .iter()
+                .enumerate()
+                .map(|(k, axis)| (reading.component(k), mean.map_or(f64::NAN, |m| m[*axis]))),
+        );
         let gone = way(reading, Span { from: tape.span.0, to: 0.5 * (span.from + span.to) }, span.to - span.from);
         let within = way(reading, span, span.to - span.from);
         all.push((format!("the way that {} has gone", reading.channel), gone));

@@ -52,6 +52,7 @@ pub fn judge(
 ) -> Result<Judgement, DiagnoseError> {
     let predict =
         |fit: Fit| Prediction { residuals: fit.segments.iter().map(|s| stage.residuals(&fit.built, s)).collect(), fit };
+    let is_last = |known: &Fit| known.set.members.len() == found.set.members.len();
     let of = |known: &Fit| -> Result<(Prediction, Prediction), DiagnoseError> {
         let set = known.set.frozen();
         let built = plant.build(&set.effects())?;
@@ -61,8 +62,8 @@ pub fn judge(
         let mut runs = first(&windows);
         begin_from(&mut runs, &known.segments);
         let whole = follow_with(stage, plant, set.clone(), &runs, Effort::JUDGED)?;
-        // Where the model is near, single runs that are far off stand in wrong valleys.
-        let is_near = whole.rms() < PLAUSIBLE;
+        // Where the model that was found is near, single runs that are far off stand in wrong valleys.
+        let is_near = is_last(known) && whole.rms() < PLAUSIBLE;
         let whole = if is_near {
             let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED.iterations, Effort::JUDGED.share));
             fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?

@@ -12,6 +12,7 @@ use crate::fit::{Fit, pseudo_inverse, vary};
 use crate::hypothesis::{Hypothesis, Scale, ScreenPoint};
 use crate::linear::{Segment, Stage, Variation, eliminate};
 use crate::plant::{Built, Plant};
+use crate::replay::Pace;
 use crate::start::{Freedom, freedoms};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -46,6 +47,8 @@ const WISH: f64 = 0.3;
 const SILENT: f64 = 1e-3;
 /// One in so many segments tunes the steps.
 const PILOTS: usize = 8;
+/// Steps of a screen, in steps of a prediction.
+const COARSER: f64 = 2.0;
 /// A screen looks at so many of the longest segments, or at more of shorter ones.
 const SEGMENTS: f64 = 24.0;
 
@@ -60,7 +63,9 @@ pub fn screen(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     let thinned =
         Fit { segments: fit.segments.iter().skip(every / 2).step_by(every).cloned().collect(), ..fit.clone() };
     let share = thinned.segments.len() as f64 / count.max(1) as f64;
-    let mut scores = screen_all(stage, plant, &thinned, all)?;
+    // Promises bear steps that predictions do not.
+    let pace = Pace { step: COARSER * stage.pace.step, free: COARSER * stage.pace.free };
+    let mut scores = screen_all(&Stage { pace, ..*stage }, plant, &thinned, all)?;
     scores.iter_mut().for_each(|s| s.score /= share);
     Ok(scores)
 }

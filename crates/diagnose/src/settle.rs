@@ -20,7 +20,7 @@ const DAMPINGS: usize = 6;
 /// Smallest damping beside none.
 const LEAST_DAMPING: f64 = 1e-5;
 /// Mean square from which on a start is suspected to stand in a wrong valley.
-const POOR: f64 = 1.5;
+const POOR: f64 = 1.15;
 /// Shares of a segment to which its start is fitted one after the other.
 const GROWTH: [f64; 3] = [0.125, 0.25, 0.5];
 /// Scalars for each free coordinate that a share has at least.

@@ -189,9 +189,9 @@ fn fit_in_turns(
 }
 
 /// Most times that starts are begun anew.
-const TURNS: usize = 3;
+const TURNS: usize = 4;
 /// Share of the cost below which that must bring it to be worth another fit.
-const LOWER: f64 = 0.98;
+const LOWER: f64 = 0.99;
 
 fn length_of(segments: &[Segment]) -> f64 {
     segments.first().map_or(0.0, |s| s.span.to - s.span.from)
