@@ -257,6 +257,10 @@ fn iterate(
     Ok(damping)
 }
 
+/// Longest step of a difference quotient, in widths of the coordinate's range, and what is left of one that leads nowhere.
+const LONGEST: f64 = 0.05;
+const SHORTER: f64 = 1e-3;
+
 /// A model for each fitted coordinate, moved by its step.
 pub fn vary(
     plant: &Plant,
@@ -267,14 +271,15 @@ pub fn vary(
     let vary_one = |((m, k), size): (&(usize, usize), &f64)| {
         let coordinate = &set.members[*m].0.coordinates[*k];
         let at = set.members[*m].1[*k];
-        let step = if at + size > coordinate.bounds[1] { -size } else { *size };
+        let size = size.min(LONGEST * (coordinate.bounds[1] - coordinate.bounds[0]));
+        let step = if at + size > coordinate.bounds[1] { -size } else { size };
         let vary_by = |step: f64| {
             let mut moved = set.clone();
             moved.members[*m].1[*k] += step;
             Ok(Variation { built: plant.build(&moved.effects())?, step })
         };
-        // At the edge of what can be built the other way is open.
-        vary_by(step).or_else(|_| vary_by(-step))
+        // At the edge of what can be built the other way is open, or a shorter one.
+        vary_by(step).or_else(|_| vary_by(-step)).or_else(|_| vary_by(SHORTER * step))
     };
     slots.iter().zip(sizes).map(vary_one).collect()
 }
@@ -290,7 +295,7 @@ fn rescale(sizes: &mut [f64], a: &DMatrix<f64>, (count, at): (usize, &[f64])) ->
             was_blind = true;
         }
         let rms = *size * (a[(k, k)].max(0.0) / count.max(1) as f64).sqrt();
-        if rms > 0.0 && !(0.01..1.0).contains(&rms) {
+        if rms > 0.0 && !(0.01..1.0).contains(&rms) && (rms > 1.0 || *size < longest) {
             *size *= (0.1 / rms).clamp(1e-3, 1e3);
         }
     }

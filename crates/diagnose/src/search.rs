@@ -80,7 +80,7 @@ const WORTHWHILE: f64 = 0.2;
 const UNPROMISING: f64 = 0.08;
 /// Promise relative to what another refit has brought below which none is made.
 const RIVAL: f64 = 0.9;
-/// Share of the cost that cheap hypotheses promise where those that are dear to screen need not be.
+/// Share of the excess that cheap hypotheses promise where those that are dear to screen need not be.
 const SUFFICIENT: f64 = 0.5;
 /// Share of the excess that a set must leave for further screens in a round.
 const UNEXPLAINED: f64 = 0.05;
@@ -171,8 +171,8 @@ fn refit_best(
         }
         let mut scores = screen_aloud(stage, plant, here, &all)?;
         // What is dear to screen is screened only where the rest leaves something.
-        let promised = scores.first().map_or(0.0, |s| s.score / here.cost);
-        if is_window && promised < SUFFICIENT && !dear.is_empty() {
+        let promised = scores.first().map_or(0.0, |s| s.score);
+        if is_window && promised < SUFFICIENT * here.excess() && !dear.is_empty() {
             let further = screen_aloud(stage, plant, here, dear)?;
             scores.extend(further.into_iter().map(|s| Score { hypothesis: s.hypothesis + all.len(), ..s }));
             scores.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -180,8 +180,7 @@ fn refit_best(
         }
         // In windows that had to be shortened a promise says little of what a refit brings.
         let least = if now.reach > STEEP { UNPROMISING * here.excess() } else { 0.0 };
-        scores.retain(|s| s.score > least);
-        let ready = refit_promising(stage, plant, here, (&all, &scores), (limits, round), &mut attempts)?;
+        let ready = refit_promising(stage, plant, here, (&all, &scores, least), (limits, round), &mut attempts)?;
         // Over whole runs only what the windows did not rule out is screened.
         let order: Vec<(String, String)> =
             attempts.iter().take(SCREENED).map(|a| (a.name.clone(), a.place.clone())).collect();
@@ -230,12 +229,12 @@ fn refit_promising(
     stage: &Stage<'_>,
     plant: &Plant,
     here: &Fit,
-    (all, scores): (&[Hypothesis], &[Score]),
+    (all, scores, least): (&[Hypothesis], &[Score], f64),
     (limits, round): (&Limits, usize),
     attempts: &mut Vec<Attempt>,
 ) -> Result<Vec<(usize, Fit)>, DiagnoseError> {
     let interesting = scores_of_interest(all, scores);
-    let picked = pick(here, all, &interesting, limits.refits);
+    let picked = pick((here, all), &interesting, (limits.refits, least));
     for score in interesting.iter().take(TOLD) {
         let h = &all[score.hypothesis];
         let (label, share) = (&h.screens[score.point].label, 100.0 * score.score / here.cost);
@@ -350,10 +349,14 @@ fn scores_of_interest<'s>(all: &[Hypothesis], scores: &'s [Score]) -> Vec<&'s Sc
 const VALLEYS: usize = 3;
 
 /// The hypotheses worth a refit: the most promising, one of each, nominal numbers among them if they promise anything.
-fn pick<'s>(now: &Fit, all: &[Hypothesis], interesting: &[&'s Score], most: usize) -> Vec<&'s Score> {
+fn pick<'s>(
+    (now, all): (&Fit, &[Hypothesis]),
+    interesting: &[&'s Score],
+    (most, least): (usize, f64),
+) -> Vec<&'s Score> {
     let penalty = (now.count as f64).ln();
     let best = interesting.first().map_or(0.0, |s| s.score);
-    let worth = |s: &&&Score| s.score > (PROMISING * best).max(penalty * s.rank as f64);
+    let worth = |s: &&&Score| s.score > (PROMISING * best).max(penalty * s.rank as f64).max(least);
     let mut picked: Vec<&Score> = Vec::new();
     for score in interesting.iter().filter(worth) {
         let same = |p: &&&Score| all[p.hypothesis].name == all[score.hypothesis].name;
