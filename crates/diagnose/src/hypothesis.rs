@@ -50,6 +50,13 @@ pub enum Encoding {
     Phasor,
     /// The parameter's inverse first, then the others as they are.
     Compliance,
+    /// One coordinate is what its parameter exceeds another by: a breakaway level is not below the sliding one.
+    Excess {
+        /// The coordinate that is an excess.
+        of: usize,
+        /// The coordinate that it exceeds.
+        over: usize,
+    },
 }
 
 /// Where a hypothesis is screened.
@@ -196,6 +203,11 @@ impl Hypothesis {
         let over = |i: usize, d: f64| (plain[i].0, if d == 0.0 { 0.0 } else { value(i) / d });
         match self.encoding {
             Encoding::Direct => plain,
+            Encoding::Excess { of, over: base } => {
+                let mut out = plain.clone();
+                out[of].1 += plain[base].1;
+                out
+            }
             Encoding::Moment => vec![plain[0], over(1, value(0)), over(2, value(0)), over(3, value(0))],
             Encoding::Anchored => {
                 vec![plain[0], over(1, value(0)), over(2, value(0)), over(3, value(0)), plain[4]]

@@ -62,12 +62,18 @@ fn add_friction(place: &str, [mu, k_b, c_b]: [f64; 3], all: &mut Vec<Hypothesis>
     let level = vec![Coordinate { bounds: [1e-3, 5.0], ..Coordinate::level("mu", mu) }];
     all.push(hypothesis("friction-coefficient", place, level).screened(&[(0, 1e-5)]).nominal_number());
     let stribeck = vec![
-        Coordinate { bounds: [1e-3, 5.0], ..Coordinate::level("mu_s", mu) },
+        Coordinate { bounds: [0.0, 5.0], ..Coordinate::level("mu_s", 0.0) },
         Coordinate { bounds: [1e-3, 5.0], ..Coordinate::level("mu_d", mu) },
         Coordinate::log("v_s", 5e-3, [1e-5, 1.0]),
     ];
     let columns = [(vec![(0, 1.0)], 1e-5), (vec![(1, 1.0)], 1e-5)];
-    all.push(hypothesis("friction-stribeck", place, stribeck).screened_on(2, &log_grid(5e-4, 0.064, 1.0), &columns));
+    all.push(
+        hypothesis("friction-stribeck", place, stribeck).encoded(Encoding::Excess { of: 0, over: 1 }).screened_on(
+            2,
+            &log_grid(5e-4, 0.064, 1.0),
+            &columns,
+        ),
+    );
     let bristle = vec![Coordinate::log("k_b", k_b, [1e-2 * k_b, 1e2 * k_b]), Coordinate::level("c_b", c_b)];
     all.push(hypothesis("friction-bristle-stiffness", place, bristle).screened(&[(0, 1e-3), (1, 1e-2 * c_b.max(1.0))]));
     all.push(hypothesis("friction-viscous", place, vec![Coordinate::level("b", 0.0)]).screened(&[(0, 1e-2)]));

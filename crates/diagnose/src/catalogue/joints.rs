@@ -14,9 +14,12 @@ pub(super) fn add(joint: &JointFact, facts: &Facts, all: &mut Vec<Hypothesis>) {
     all.push(hypothesis("joint-coulomb-friction", place, vec![Coordinate::level("c", 0.0)]).screened(&[(0, SMALL)]));
     let stribeck =
         vec![Coordinate::level("c", 0.0), Coordinate::level("s", 0.0), Coordinate::log("v_s", 0.05, [1e-3, 3.0])];
-    let both = (vec![(0, 1.0), (1, 1.0)], SMALL);
-    let above = (vec![(1, 1.0)], SMALL);
-    all.push(hypothesis("joint-stribeck-friction", place, stribeck).screened_on(2, &[0.02, 0.08, 0.3], &[both, above]));
+    let columns = [(vec![(0, 1.0)], SMALL), (vec![(1, 1.0)], SMALL)];
+    all.push(
+        hypothesis("joint-stribeck-friction", place, stribeck)
+            .encoded(Encoding::Excess { of: 1, over: 0 })
+            .screened_on(2, &[0.02, 0.08, 0.3], &columns),
+    );
     let sides = vec![Coordinate::level("c_plus", 0.0), Coordinate::level("c_minus", 0.0)];
     all.push(hypothesis("joint-friction-asymmetry", place, sides).screened(&[(0, SMALL), (1, SMALL)]));
     add_springs(joint, place, all);
