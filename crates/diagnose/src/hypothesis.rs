@@ -146,6 +146,9 @@ impl Coordinate {
     }
 }
 
+/// The law that stands at a contact for what drags a body that slides there.
+pub const AT_CONTACT: &str = "friction-viscous";
+
 impl Hypothesis {
     /// `name at place`.
     pub fn title(&self) -> String {
@@ -295,16 +298,19 @@ impl Hypothesis {
     }
 
     /// The law that this one becomes where some of its numbers do nothing, and the coordinates of that.
-    pub fn plainer(&self, x: &[f64]) -> Option<(&'static str, Vec<f64>)> {
-        match self.name {
+    ///
+    /// What slides under its own weight cannot tell drag from viscous friction: there the other name is found at its contact.
+    pub fn plainer(&self, x: &[f64]) -> Vec<(&'static str, Vec<f64>)> {
+        let one = match self.name {
             "joint-stribeck-friction" => Some(("joint-coulomb-friction", vec![x[0]])),
             "joint-friction-asymmetry" => Some(("joint-coulomb-friction", vec![0.5 * (x[0] + x[1])])),
             "joint-backlash" => Some(("joint-elasticity", vec![(-x[1]).exp(), x[2]])),
-            "tether-stiffness" => Some(("linear-drag", vec![x[4]])),
+            "tether-stiffness" => return vec![("linear-drag", vec![x[4]]), (AT_CONTACT, vec![x[4]])],
             "friction-stribeck" => Some(("friction-coefficient", vec![x[1]])),
             "friction-anisotropy" => Some(("friction-coefficient", vec![x[0]])),
             _ => None,
-        }
+        };
+        one.into_iter().collect()
     }
 
     /// Standard errors of the parameters from the covariance of the coordinates, by difference quotients of [`Self::decode`].

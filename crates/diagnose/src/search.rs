@@ -8,7 +8,7 @@
 
 use crate::error::DiagnoseError;
 use crate::fit::{Effort, Fit, fit};
-use crate::hypothesis::{Hypothesis, Tier};
+use crate::hypothesis::{AT_CONTACT, Hypothesis, Tier};
 use crate::linear::{Segment, Stage};
 use crate::pace;
 use crate::plant::Plant;
@@ -400,14 +400,16 @@ fn simplify(
     all: &[Hypothesis],
 ) -> Result<Standing, DiagnoseError> {
     for member in 0..now.judge().set.members.len() {
-        let set = &now.judge().set;
-        let (h, x) = &set.members[member];
-        let Some((name, value)) = h.plainer(x) else { continue };
-        let Some(plain) = all.iter().find(|p| p.name == name && p.place == h.place) else { continue };
-        let tried = now.refit(stage, plant, set.without(member).with(plain, &value), LOOK)?;
-        if !now.is_better(&tried) {
-            stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
-            now = tried;
+        let (h, x) = now.judge().set.members[member].clone();
+        for (name, value) in h.plainer(&x) {
+            let is_here = |p: &&Hypothesis| p.name == name && (p.place == h.place || name == AT_CONTACT);
+            let Some(plain) = all.iter().find(is_here) else { continue };
+            let tried = now.refit(stage, plant, now.judge().set.without(member).with(plain, &value), LOOK)?;
+            if !now.is_better(&tried) {
+                stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
+                now = tried;
+                break;
+            }
         }
     }
     Ok(now)

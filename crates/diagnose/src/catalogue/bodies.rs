@@ -21,10 +21,14 @@ pub(super) fn add(body: &BodyFact, facts: &Facts, all: &mut Vec<Hypothesis>) {
         return;
     }
     let (turns, slides) = (body.mask[..3].iter().any(|m| *m), body.mask[3..].iter().any(|m| *m));
+    // On what slides under its own weight a force is a tilt, and drag is viscous friction.
+    let rests = facts.contacts.iter().any(|c| c.normal.is_none() && (c.mass - body.mass).abs() < 1e-9 * body.mass);
     if slides {
-        add_constant("constant-force", place, &body.mask[3..], body.mass * 1e-5, all);
         let drag = |name| hypothesis(name, place, vec![Coordinate::level("c", 0.0)]).screened(&[(0, 1e-4)]);
-        all.push(drag("linear-drag"));
+        if !rests {
+            add_constant("constant-force", place, &body.mask[3..], body.mass * 1e-5, all);
+            all.push(drag("linear-drag"));
+        }
         all.push(drag("quadratic-drag"));
         add_tether(place, &body.mask[3..], all);
     }
