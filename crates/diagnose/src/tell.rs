@@ -142,12 +142,17 @@ fn located(findings: &Findings, stage: &Stage<'_>) -> Vec<LocatedPlace> {
         Verdict::NoMismatch => Vec::new(),
         Verdict::Unknown => by_force().into_iter().map(|(n, s)| place(n.clone(), s, condition_of(&n))).collect(),
         _ => {
-            // Two effects at one place are one place.
+            // Two effects at one place are one place; a law that took another's place at the end stands for that.
+            let members = &findings.found.set.members;
+            let is_member = |place: &str| members.iter().any(|(h, _)| h.place == place);
+            let kept = || findings.attempts.iter().filter(|a| a.kept);
+            let most =
+                |places: &dyn Fn(&str) -> bool| kept().filter(|a| places(&a.place)).map(|a| a.share).reduce(f64::max);
             let mut shares: Vec<(String, f64)> = Vec::new();
-            for attempt in findings.attempts.iter().filter(|a| a.kept) {
-                match shares.iter_mut().find(|s| s.0 == attempt.place) {
-                    Some(known) => known.1 = known.1.max(attempt.share),
-                    None => shares.push((attempt.place.clone(), attempt.share)),
+            for (h, _) in members {
+                let own = most(&|place| place == h.place).or_else(|| most(&|place| !is_member(place)));
+                if !shares.iter().any(|s| s.0 == h.place) {
+                    shares.push((h.place.clone(), own.unwrap_or(1.0)));
                 }
             }
             shares.into_iter().map(|(p, share)| place(p.clone(), share.clamp(0.0, 1.0), condition_of(&p))).collect()
