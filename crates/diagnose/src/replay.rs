@@ -35,13 +35,7 @@ const SAME: f64 = 1e-9;
 
 /// Residuals of a replay, in the order of the tape's events within the span.
 pub fn residuals(built: &Built, tape: &Tape, start: &Start, span: Span, pace: Pace) -> Result<Vec<f64>, DiagnoseError> {
-    let range = tape.range(span);
-    let offset = |i: usize| tape.offsets[range.start + i] - tape.offsets[range.start];
-    let mut out = vec![f64::NAN; offset(range.len())];
-    observe(built, tape, start, span, pace, |i, event, value| {
-        tape.readings[event.reading as usize].write_residual(event.sample as usize, value, &mut out[offset(i)..]);
-    })?;
-    Ok(out)
+    residuals_of(&readings(built, tape, start, span, pace)?, built, tape, span)
 }
 
 /// Replays a span and hands every predicted reading to `look`, with its number among the span's events.
@@ -109,16 +103,7 @@ fn measure(
     // Until when nothing is known to touch; and the next instant at which something else than a contact is read.
     let (mut flown, mut next) = (f64::NEG_INFINITY, 0);
     for (at, (i, event)) in events.iter().enumerate() {
-        let (gauge, _) = &sensors[event.reading as usize];
-        if !rests(event) {
-            replay.advance_to(event.time)?;
-            if gauge.reads_contact() {
-                replay.world.refresh_touches();
-            }
-            look(*i, event, &gauge.read(&replay.world));
-            continue;
-        }
-        if event.time > flown {
+        if rests(event) && event.time > flown {
             next = next.max(at);
             while events.get(next).is_some_and(|(_, e)| rests(e)) {
                 next += 1;
@@ -127,12 +112,15 @@ fn measure(
             flown = replay.fly_to(end)?;
         }
         // What nothing touches reads nothing: no step has to end there.
-        if event.time <= flown {
+        if rests(event) && event.time <= flown {
             look(*i, event, &Measured::Vector(Vec3::zeros()));
             continue;
         }
         replay.advance_to(event.time)?;
-        replay.world.refresh_touches();
+        let (gauge, _) = &sensors[event.reading as usize];
+        if gauge.reads_contact() {
+            replay.world.refresh_touches();
+        }
         look(*i, event, &gauge.read(&replay.world));
     }
     Ok(())
