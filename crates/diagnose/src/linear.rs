@@ -134,9 +134,14 @@ impl Stage<'_> {
         segment: &Segment,
         r: &DVector<f64>,
     ) -> DVector<f64> {
-        match residuals_of(readings, &variation.built, &self.tapes[segment.run], segment.span) {
-            Ok(moved) => sane((DVector::from_vec(moved) * segment.weight.sqrt() - r) / variation.step),
-            Err(_) => DVector::zeros(r.len()),
+        sane((self.residuals_of(readings, &variation.built, segment) - r) / variation.step)
+    }
+
+    /// Residuals of a segment whose readings are known; infinite where there are none.
+    pub fn residuals_of(&self, readings: &[Measured], built: &Built, segment: &Segment) -> DVector<f64> {
+        match residuals_of(readings, built, &self.tapes[segment.run], segment.span) {
+            Ok(r) if !readings.is_empty() => DVector::from_vec(r) * segment.weight.sqrt(),
+            _ => DVector::from_element(self.count(segment), f64::INFINITY),
         }
     }
 

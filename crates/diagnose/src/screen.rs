@@ -166,10 +166,10 @@ fn products_of(
     active: &[Variation],
     probes: &[Vec<Probe>],
 ) -> Vec<DMatrix<f64>> {
-    let r = stage.residuals(&fit.built, segment);
+    let readings = stage.readings(&fit.built, segment).unwrap_or_default();
+    let r = stage.residuals_of(&readings, &fit.built, segment);
     let start = stage.columns_of(&fit.built, segment, &r);
     let g: Vec<DVector<f64>> = active.par_iter().map(|v| stage.column(v, segment, &r)).collect();
-    let readings = stage.readings(&fit.built, segment).unwrap_or_default();
     let column = |p: &Probe| match p.is_reading {
         true => stage.column_of(&readings, &p.variation, segment, &r),
         false => stage.column(&p.variation, segment, &r),
