@@ -119,7 +119,7 @@ pub fn diagnose(
 }
 
 /// The last fit, of all samples.
-const FINAL: Effort = Effort { iterations: 8, share: 1e-6, reuse: false };
+const FINAL: Effort = Effort { iterations: 8, share: 1e-6, reuse: true };
 /// Samples of a channel of a run that are enough to search by.
 const ENOUGH: usize = 3000;
 

@@ -19,6 +19,8 @@ const SETTLINGS: usize = 2;
 const DAMPINGS: usize = 6;
 /// Smallest damping beside none.
 const LEAST_DAMPING: f64 = 1e-5;
+/// Share of what old columns promise that a step along them must bring for a further one.
+const SERVES: f64 = 0.5;
 /// Mean square from which on a start is suspected to stand in a wrong valley.
 const POOR: f64 = 1.15;
 /// Shares of a segment to which its start is fitted one after the other.
@@ -91,23 +93,44 @@ impl Stage<'_> {
             sizes = used;
             now.iterations += 1;
             now.shown = columns.iter().filter(|c| c.norm_squared() > 0.0).count();
-            let linear = eliminate(&columns.iter().collect::<Vec<_>>(), &[&r], &all);
             now.segment.columns = Some(Arc::new(StartColumns { freedoms: all.clone(), columns }));
+            if !self.descend(built, &mut now, &mut r, (&mut damping, share)) {
+                break;
+            }
+        }
+        (now, sizes)
+    }
+
+    /// Steps along the columns of the last linearisation, as long as the cost falls as these promise (Shamanskii 1967); whether a new
+    /// one may lead further.
+    fn descend(
+        &self,
+        built: &Built,
+        now: &mut Settled,
+        r: &mut DVector<f64>,
+        (damping, share): (&mut f64, f64),
+    ) -> bool {
+        let Some(known) = now.segment.columns.clone() else { return false };
+        let columns: Vec<&DVector<f64>> = known.columns.iter().collect();
+        for is_fresh in std::iter::once(true).chain(std::iter::repeat(false)) {
+            let linear = eliminate(&columns, &[r], &known.freedoms);
             let enough = NEXT_TO_NOTHING.max(share * (now.cost - r.len() as f64).max(0.0));
             let promised = now.cost - linear.reduced[(0, 0)];
             if promised.is_nan() || promised < enough {
                 now.converged = true;
-                break;
+                return false;
             }
-            let Some((moved, after, used)) = self.downhill(built, &now.segment, &linear, (now.cost, damping)) else {
-                break;
+            let Some((moved, after, used)) = self.downhill(built, &now.segment, &linear, (now.cost, *damping)) else {
+                return !is_fresh;
             };
-            damping = used;
-            let cost = finite(after.norm_squared());
-            now.converged = now.cost - cost < enough;
-            (now.segment, now.cost, r) = (moved, cost, after);
+            let gained = now.cost - finite(after.norm_squared());
+            (now.segment, now.cost, *r, *damping) = (moved, now.cost - gained, after, used);
+            if gained < SERVES * promised {
+                now.converged = is_fresh && gained < enough;
+                return true;
+            }
         }
-        (now, sizes)
+        true
     }
 
     /// Segments whose starts are begun anew from what their samples say, where that leads to a lower valley than they stand in.
