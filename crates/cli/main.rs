@@ -10,6 +10,7 @@ mod inspect;
 mod lab;
 mod live;
 mod new;
+mod plant;
 mod progress;
 mod run;
 mod schema;
@@ -55,6 +56,8 @@ enum Subcommands {
     Lab(lab::Arguments),
     /// Where a scenario and a recording differ, what was left out, and how much better it predicts with it
     Diagnose(diagnose::Arguments),
+    /// Write the recording that a rig would make if it were the scenario, to plan a test or to try a diagnosis
+    Plant(plant::Arguments),
     /// Judge a folder of diagnoses against answer keys
     Score(score::Arguments),
     /// Print the JSON Schema of the scenario file, or of diagnosis.json
@@ -82,6 +85,7 @@ fn main() -> ExitCode {
         Subcommands::View(arguments) => view::main(&arguments),
         Subcommands::Lab(arguments) => lab::main(&arguments),
         Subcommands::Diagnose(arguments) => diagnose::main(&arguments),
+        Subcommands::Plant(arguments) => plant::main(&arguments),
         Subcommands::Score(arguments) => score::main(&arguments),
         Subcommands::Schema(arguments) => schema::main(&arguments),
         Subcommands::Inspect(arguments) => inspect::main(&arguments),

@@ -16,12 +16,12 @@ use crate::judge::{Judgement, judge};
 use crate::linear::{Segment, Stage};
 use crate::locate::{Located, locate, places};
 use crate::pace::{self, Discretisation};
-use crate::plant::{Built, Plant};
+use crate::plant::Plant;
 use crate::replay::Pace;
 use crate::search::{Attempt, Limits, is_significant, search};
 use crate::standing::{Standing, follow};
 use crate::stretches::{self, Stretches, cut};
-use crate::tape::Tape;
+use crate::tape::{Tape, load};
 use crate::tell;
 use crate::work::{Watch, Work};
 use record::{RecordingSet, Role, Severity};
@@ -150,27 +150,6 @@ fn refuse_foreign(inspection: &record::inspect::Inspection) -> Result<(), Diagno
     let faults: Vec<String> =
         inspection.remarks.iter().filter(|r| r.severity == Severity::Fault).map(|r| r.what.clone()).collect();
     if faults.is_empty() { Ok(()) } else { Err(DiagnoseError::Foreign(faults.join("; "))) }
-}
-
-/// The runs and the nominal model, the plant told what is read and driven.
-fn load(plant: &mut Plant, set: &RecordingSet) -> Result<(Vec<Tape>, Built), DiagnoseError> {
-    let model = plant.build(&[])?.model;
-    let tapes: Vec<Tape> = set.runs.iter().map(|run| Tape::new(set, run, plant, &model)).collect::<Result<_, _>>()?;
-    let mut channels: Vec<String> = tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.channel.clone())).collect();
-    channels.sort();
-    channels.dedup();
-    plant.attach(set, &model, channels)?;
-    for tape in &tapes {
-        if let Some(reading) = tape.readings.iter().find(|r| r.sigma <= 0.0) {
-            return Err(DiagnoseError::Channel {
-                channel: reading.channel.clone(),
-                file: tape.file.clone(),
-                reason: "its noise is not known; give it in [noise] of recording.toml (softdock inspect estimates it)"
-                    .to_owned(),
-            });
-        }
-    }
-    Ok((tapes, plant.build(&[])?))
 }
 
 /// Window in which a rig's predictions are judged, s; elsewhere a twentieth of a run.

@@ -1,7 +1,7 @@
 //! A recorded run, made ready for replay: commands, readings, and the order in which they come.
 
 use crate::error::DiagnoseError;
-use crate::plant::Plant;
+use crate::plant::{Built, Plant};
 use crate::reading::{Reading, Value};
 use crate::replay::Span;
 use record::{RecordedRun, RecordingSet, Role, Series};
@@ -129,6 +129,27 @@ impl Tape {
         let end = if span.to >= self.span.1 { self.events.len() } else { before(span.to) };
         before(span.from)..end.max(before(span.from))
     }
+}
+
+/// The runs and the nominal model, the plant told what is read and driven.
+pub(crate) fn load(plant: &mut Plant, set: &RecordingSet) -> Result<(Vec<Tape>, Built), DiagnoseError> {
+    let model = plant.build(&[])?.model;
+    let tapes: Vec<Tape> = set.runs.iter().map(|run| Tape::new(set, run, plant, &model)).collect::<Result<_, _>>()?;
+    let mut channels: Vec<String> = tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.channel.clone())).collect();
+    channels.sort();
+    channels.dedup();
+    plant.attach(set, &model, channels)?;
+    for tape in &tapes {
+        if let Some(reading) = tape.readings.iter().find(|r| r.sigma <= 0.0) {
+            return Err(DiagnoseError::Channel {
+                channel: reading.channel.clone(),
+                file: tape.file.clone(),
+                reason: "its noise is not known; give it in [noise] of recording.toml (softdock inspect estimates it)"
+                    .to_owned(),
+            });
+        }
+    }
+    Ok((tapes, plant.build(&[])?))
 }
 
 /// `body.target.position.x` → (`body.target.position`, 0); scalars stand in component 0, w of a quaternion in 3.

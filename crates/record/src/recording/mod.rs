@@ -12,6 +12,7 @@ mod group;
 mod manifest;
 mod orientation;
 mod quantum;
+mod save;
 mod series;
 mod spelling;
 mod table;

@@ -1,0 +1,100 @@
+//! Writing a set: what was read, or what was made, as a folder that reads back the same.
+
+use super::{RecordedRun, RecordingSet, Series};
+use crate::{RecordError, write_file};
+use std::fmt::Write;
+use std::path::Path;
+use toml::Value;
+
+/// Decimals of values whose rounding is not a power of ten.
+const DECIMALS: usize = 12;
+
+impl RecordingSet {
+    /// Writes `recording.toml` and one CSV for each run into a folder; channels have the names and units of the format.
+    pub fn save(&self, folder: &Path) -> Result<(), RecordError> {
+        for run in &self.runs {
+            write_file(&folder.join(&run.file), encode(run).as_bytes())?;
+        }
+        write_file(&folder.join(super::manifest::FILE), self.manifest().as_bytes())
+    }
+
+    fn manifest(&self) -> String {
+        let quoted = |text: &str| Value::from(text).to_string();
+        let mut text = format!("format = 1\nrig = {}\ntitle = {}\n\n[noise]\n", quoted(&self.rig), quoted(&self.title));
+        for (channel, sigma) in &self.noise {
+            let _ = writeln!(text, "{} = {sigma:e}", quoted(channel));
+        }
+        for run in &self.runs {
+            let (file, note) = (quoted(&run.file), quoted(&run.note));
+            let _ = write!(text, "\n[[run]]\nfile = {file}\nrole = \"{}\"\nnote = {note}\n", run.role.key());
+        }
+        text
+    }
+}
+
+/// A table of all series: a row for each instant, empty cells where a channel was not sampled.
+fn encode(run: &RecordedRun) -> String {
+    let mut times: Vec<f64> = run.series.iter().flat_map(|s| s.times.iter().copied()).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let mut text = String::from("t");
+    run.series.iter().for_each(|s| text.extend([",", s.channel.as_str()]));
+    text.push('\n');
+    let decimals: Vec<Option<usize>> = run.series.iter().map(decimals_of).collect();
+    let mut next = vec![0; run.series.len()];
+    for time in times {
+        let _ = write!(text, "{time}");
+        for ((series, at), decimals) in run.series.iter().zip(&mut next).zip(&decimals) {
+            text.push(',');
+            if series.times.get(*at) == Some(&time) {
+                let _ = match decimals {
+                    Some(decimals) => write!(text, "{:.decimals$}", series.values[*at]),
+                    None => write!(text, "{}", series.values[*at]),
+                };
+                *at += 1;
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Decimals that show a series' rounding; none where its values are continuous.
+fn decimals_of(series: &Series) -> Option<usize> {
+    let quantum = series.quantum();
+    let places = -quantum.log10();
+    let is_decimal = (places - places.round()).abs() < 1e-9 && places > -0.5;
+    (quantum > 0.0).then(|| if is_decimal { places.round() as usize } else { DECIMALS })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::Role;
+
+    #[test]
+    fn a_set_reads_back_as_it_was_written() {
+        let times: Vec<f64> = (0..50).map(|i| f64::from(i) * 0.02).collect();
+        let position: Vec<f64> = times.iter().map(|t| ((3.0 * t).sin() * 1e4).round() / 1e4).collect();
+        let slow: Vec<f64> = times.iter().step_by(3).copied().collect();
+        let command: Vec<f64> = slow.iter().map(|t| 0.1 + t.cos() / 3.0).collect();
+        let series = vec![
+            Series::new("joint.elbow.effort_command", slow, command),
+            Series::new("joint.elbow.position", times, position),
+        ];
+        let run = RecordedRun { file: "run-01.csv".into(), role: Role::Holdout, note: "a \"note\"".into(), series };
+        let set = RecordingSet {
+            rig: "arm".into(),
+            title: "one joint".into(),
+            noise: [("joint.elbow.position".to_owned(), 2e-5)].into(),
+            runs: vec![run],
+            ..RecordingSet::default()
+        };
+        let folder = tempfile::tempdir().expect("a folder");
+        set.save(folder.path()).expect("it is written");
+        let read = RecordingSet::load(folder.path()).expect("it is read");
+        assert_eq!((&read.rig, &read.title, &read.noise), (&set.rig, &set.title, &set.noise));
+        let (a, b) = (&read.runs[0], &set.runs[0]);
+        assert_eq!((&a.file, a.role, &a.note, &a.series), (&b.file, b.role, &b.note, &b.series));
+    }
+}
