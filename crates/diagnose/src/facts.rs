@@ -162,12 +162,7 @@ fn bodies(built: &Built) -> Vec<BodyFact> {
 fn contacts(built: &Built) -> Vec<ContactFact> {
     let mut all: Vec<ContactFact> = Vec::new();
     for (pair, law) in built.model.laws.iter().enumerate() {
-        let [a, b] = built.model.scene.pairs()[pair];
-        let short = |i: usize| {
-            let name = &built.model.collider_names[i];
-            name.rsplit_once('/').map_or(name.as_str(), |(_, s)| s).to_owned()
-        };
-        let name = format!("{}/{}", short(a), short(b));
+        let name = contact_name(built, pair);
         if all.iter().any(|c| c.name == name) {
             continue;
         }
@@ -181,6 +176,22 @@ fn contacts(built: &Built) -> Vec<ContactFact> {
         all.push(ContactFact { name, normal, bristle, mass, has_normal_motion: normal.is_some() });
     }
     all
+}
+
+/// The parts of a pair: shapes, or links that carry several shapes under one law, as the two plates of a drogue.
+fn contact_name(built: &Built, pair: usize) -> String {
+    let (pairs, laws) = (built.model.scene.pairs(), &built.model.laws);
+    let of = |name: &str| name.rsplit_once('/').map_or(name, |(_, s)| s).to_owned();
+    let link = |i: usize| &built.model.collider_links[i];
+    let links = |p: usize| pairs[p].map(link);
+    let alike: Vec<usize> = (0..pairs.len()).filter(|p| links(*p) == links(pair)).collect();
+    let is_one = alike.iter().all(|p| laws[*p] == laws[pair]);
+    let side = |k: usize| {
+        let shape = pairs[pair][k];
+        let is_alone = alike.iter().all(|p| pairs[*p][k] == shape);
+        of(if is_alone || !is_one || link(shape) == "world" { &built.model.collider_names[shape] } else { link(shape) })
+    };
+    format!("{}/{}", side(0), side(1))
 }
 
 /// Mass of the vehicle of a body that moves; infinite for one that does not.

@@ -204,6 +204,8 @@ pub struct Model {
     pub laws: Vec<PairLaw>,
     /// Names of colliders, `vehicle/shape`, by collider.
     pub collider_names: Vec<String>,
+    /// Names of the links that carry them, `vehicle/link`, or `world`.
+    pub collider_links: Vec<String>,
     /// Vehicle and body of a global body index; the world is not in the list.
     pub owners: Vec<(usize, usize)>,
     /// Laws of the single coordinates, by index into `v`.
@@ -241,6 +243,7 @@ impl Model {
         let owners: Vec<_> =
             vehicles.iter().enumerate().flat_map(|(i, v)| (0..v.tree.bodies.len()).map(move |b| (i, b))).collect();
         let collider_names = spec.shapes.iter().map(|s| qualified_name(&vehicles, s)).collect();
+        let collider_links = spec.shapes.iter().map(|s| link_name(&vehicles, s)).collect();
         let colliders: Vec<_> = spec.shapes.iter().map(|s| collider(&vehicles, s, owners.len())).collect();
         let (pairs, laws): (Vec<_>, Vec<_>) = spec.pairs.into_iter().unzip();
         let scene = Scene::new(colliders, pairs)?;
@@ -252,6 +255,7 @@ impl Model {
             scene,
             laws,
             collider_names,
+            collider_links,
             owners,
             coordinates,
             actuators: spec.actuators,
@@ -414,6 +418,11 @@ fn resolve_mechanisms(
 
 fn qualified_name(vehicles: &[Vehicle], shape: &ShapeSpec) -> String {
     shape.vehicle.map_or_else(|| format!("world/{}", shape.name), |v| format!("{}/{}", vehicles[v].name, shape.name))
+}
+
+fn link_name(vehicles: &[Vehicle], shape: &ShapeSpec) -> String {
+    let of = |v: usize| format!("{}/{}", vehicles[v].name, vehicles[v].tree.links[shape.link].name);
+    shape.vehicle.map_or_else(|| "world".to_owned(), of)
 }
 
 fn collider(vehicles: &[Vehicle], shape: &ShapeSpec, world: usize) -> Collider {
