@@ -9,12 +9,11 @@ use crate::linear::Stage;
 use crate::locate::{Located, WindowForce};
 use crate::reading::{Reading, Value};
 use crate::replay::Span;
+use crate::stretches::MISSED;
 use crate::tape::Tape;
 use scenario::measure::Quantity;
 use spatial::Vec3;
 
-/// Standard deviations of a window's mean square beyond which it is missed.
-const MISSED: f64 = 6.0;
 /// Share of the variance that a quantity must explain to be named.
 const NAMED: f64 = 0.6;
 /// Windows that a regression wants at least.

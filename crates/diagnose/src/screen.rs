@@ -45,8 +45,9 @@ struct Probe {
 const WISH: f64 = 0.3;
 /// Root mean square below which a probe's step says nothing, units of noise.
 const SILENT: f64 = 1e-3;
-/// One in so many segments tunes the steps.
+/// One in so many segments tunes the steps, and so many of the worst.
 const PILOTS: usize = 8;
+const WORST: usize = 2;
 /// Steps of a screen, in steps of a prediction.
 const COARSER: f64 = 2.0;
 /// A screen looks at so many of the longest segments, or at more of shorter ones.
@@ -76,8 +77,9 @@ fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     let active = vary(plant, &fit.set, &slots, &sizes)?;
     let points: Vec<(usize, usize)> =
         all.iter().enumerate().flat_map(|(h, hyp)| (0..hyp.screens.len()).map(move |p| (h, p))).collect();
-    let probes: Vec<Vec<Probe>> =
-        points.par_iter().map(|(h, p)| probes_of(stage, plant, fit, &all[*h], &all[*h].screens[*p])).collect();
+    let pilots = pilots_of(stage, fit);
+    let probes_at = |(h, p): &(usize, usize)| probes_of(stage, plant, (fit, &pilots), (&all[*h], &all[*h].screens[*p]));
+    let probes: Vec<Vec<Probe>> = points.par_iter().map(probes_at).collect();
     let products = sum_products(stage, fit, &active, &probes);
     let scores = points.iter().zip(&probes).zip(products).filter_map(|((at, probes), k)| {
         let hypothesis = &all[at.0];
@@ -99,7 +101,12 @@ fn active_size(fit: &Fit, m: usize, k: usize) -> f64 {
 }
 
 /// The columns of a screen point with tuned steps; those that cannot be built are left out.
-fn probes_of(stage: &Stage<'_>, plant: &Plant, fit: &Fit, hypothesis: &Hypothesis, point: &ScreenPoint) -> Vec<Probe> {
+fn probes_of(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    (fit, pilots): (&Fit, &[Segment]),
+    (hypothesis, point): (&Hypothesis, &ScreenPoint),
+) -> Vec<Probe> {
     let build = |base: &[f64], direction: &[f64], step: f64| -> Option<Variation> {
         let x: Vec<f64> = base.iter().zip(direction).map(|(b, d)| b + step * d).collect();
         let mut effects = fit.set.effects();
@@ -111,7 +118,7 @@ fn probes_of(stage: &Stage<'_>, plant: &Plant, fit: &Fit, hypothesis: &Hypothesi
         if c.secant {
             return Some(first);
         }
-        let size = pilot_size(stage, fit, &first.built);
+        let size = pilot_size(stage, fit, pilots, &first.built);
         let step = if size > 0.0 && size.is_finite() { c.step * (WISH / size).clamp(1e-6, 1e4) } else { c.step };
         let near = (0.1..3.0).contains(&(step / c.step));
         let variation = if near { first } else { build(&c.base, &c.direction, step)? };
@@ -136,15 +143,35 @@ fn probes_of(stage: &Stage<'_>, plant: &Plant, fit: &Fit, hypothesis: &Hypothesi
     probes
 }
 
-/// Root mean square of what a changed model does to a few segments.
-fn pilot_size(stage: &Stage<'_>, fit: &Fit, built: &Built) -> f64 {
-    let every = PILOTS.min(fit.segments.len()).max(1);
-    let parts = fit.segments.iter().skip(every / 2).step_by(every).map(|segment| {
+/// Segments that tune steps: those in which most is amiss, then an even selection.
+fn pilots_of(stage: &Stage<'_>, fit: &Fit) -> Vec<Segment> {
+    let amiss = |s: &Segment| (stage.residuals(&fit.built, s).norm_squared() / s.weight, stage.count(s));
+    let mut order: Vec<(usize, f64)> = fit
+        .segments
+        .par_iter()
+        .map(amiss)
+        .map(|(cost, count)| cost - count as f64)
+        .collect::<Vec<_>>()
+        .into_iter()
+        .enumerate()
+        .collect();
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let even = (PILOTS / 2..fit.segments.len()).step_by(PILOTS);
+    let mut chosen: Vec<usize> = order.iter().take(WORST).map(|o| o.0).chain(even).collect();
+    let mut seen = std::collections::BTreeSet::new();
+    chosen.retain(|i| seen.insert(*i));
+    chosen.into_iter().map(|i| fit.segments[i].clone()).collect()
+}
+
+/// Root mean square of what a changed model does to some segments; to any, where none of these shows it.
+fn pilot_size(stage: &Stage<'_>, fit: &Fit, pilots: &[Segment], built: &Built) -> f64 {
+    let moved = |segment: &Segment| {
         let moved = Segment { start: segment.start.fitted_to(built), ..segment.clone() };
         let difference = stage.residuals(built, &moved) - stage.residuals(&fit.built, segment);
         (difference.norm_squared() / difference.len().max(1) as f64).sqrt()
-    });
-    parts.fold(0.0, f64::max)
+    };
+    let size = pilots.iter().map(moved).fold(0.0, f64::max);
+    if size > 0.0 { size } else { fit.segments.iter().map(moved).find(|size| *size > 0.0).unwrap_or(0.0) }
 }
 
 /// Reduced products of (active, columns, r) of every point, summed over the segments.

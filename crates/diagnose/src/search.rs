@@ -240,6 +240,8 @@ fn refit_promising(
         let (label, share) = (&h.screens[score.point].label, 100.0 * score.score / here.cost);
         stage.work.watch.step(&format!("  {} {label} promises {share:.1} % of the cost", h.title()));
     }
+    if std::env::var("SDBG").is_ok() { for score in scores { let h=&all[score.hypothesis]; if h.place.starts_with("contact") { eprintln!("DBG {} {} {:.1} start {:?}", h.title(), h.screens[score.point].label, score.score, score.start); } }
+      for s in &here.segments { let r=stage.residuals(&here.built,s); eprintln!("DBG seg run {} {:.3}-{:.3} n {} w {:.5} rms {:.2}", s.run, s.span.from, s.span.to, r.len(), s.weight, (r.norm_squared()/r.len() as f64/s.weight).sqrt()); } }
     let mut ready: Vec<(usize, Fit)> = Vec::new();
     for score in interesting {
         let h = &all[score.hypothesis];

@@ -15,6 +15,8 @@ use std::sync::Arc;
 
 /// Rounds in which starts follow a changed model along old columns.
 const SETTLINGS: usize = 2;
+/// Promised share of the cost below which a start has settled.
+const SETTLED: f64 = 1e-3;
 /// Most dampings tried for one linearisation.
 const DAMPINGS: usize = 6;
 /// Smallest damping beside none.
@@ -199,22 +201,37 @@ impl Stage<'_> {
     /// Segments whose starts have followed a changed model as far as their old columns tell, and their cost.
     pub fn settle(&self, built: &Built, segments: &[Segment]) -> (Vec<Segment>, f64) {
         let of = |segment: &Segment| {
-            let (mut now, mut r) = self.nearer(built, segment);
-            let mut cost = finite(r.norm_squared());
-            let Some(known) = &segment.columns else { return (now, cost) };
-            for _ in 0..SETTLINGS {
-                let s: Vec<&DVector<f64>> = known.columns.iter().collect();
-                let linear = eliminate(&s, &[&r], &known.freedoms);
-                let Some((moved, after, _)) = self.downhill(built, &now, &linear, (cost, 0.0)) else { break };
-                (now, cost, r) = (moved, finite(after.norm_squared()), after);
-            }
-            (now, cost)
+            let (now, r) = self.nearer(built, segment);
+            self.settled(built, (now, r), segment.columns.as_ref())
         };
         let (segments, costs): (Vec<Segment>, Vec<f64>) = segments.par_iter().map(of).unzip();
         (segments, costs.iter().sum())
     }
 
-    /// Segments after a step of the parameters: each start goes where its linear model says, or stays where that is worse.
+    /// A segment whose start has gone where old columns lead it, and its cost.
+    fn settled(
+        &self,
+        built: &Built,
+        (mut now, mut r): (Segment, DVector<f64>),
+        known: Option<&Arc<StartColumns>>,
+    ) -> (Segment, f64) {
+        let mut cost = finite(r.norm_squared());
+        let Some(known) = known else { return (now, cost) };
+        let columns: Vec<&DVector<f64>> = known.columns.iter().collect();
+        for _ in 0..SETTLINGS {
+            let linear = eliminate(&columns, &[&r], &known.freedoms);
+            let promised = cost - linear.reduced[(0, 0)];
+            if promised.is_nan() || promised < NEXT_TO_NOTHING.max(SETTLED * cost) {
+                break;
+            }
+            now.columns = Some(Arc::clone(known));
+            let Some((moved, after, _)) = self.downhill(built, &now, &linear, (cost, 0.0)) else { break };
+            (now, cost, r) = (moved, finite(after.norm_squared()), after);
+        }
+        (now, cost)
+    }
+
+    /// Segments after a step of the parameters: each start goes where its linear model says, or stays where that is worse, and settles.
     pub fn follow(
         &self,
         built: &Built,
@@ -224,20 +241,23 @@ impl Stage<'_> {
     ) -> (Vec<Segment>, f64) {
         let of = |(segment, linear): (&Segment, &SegmentLinear)| {
             let step = linear.start_step(theta);
-            let mut best: Option<(Segment, f64)> = None;
+            let mut best: Option<(Segment, DVector<f64>)> = None;
             for share in [1.0, 0.4, 0.0] {
                 let by: Vec<f64> = step.iter().map(|d| d * share).collect();
                 let moved = Segment { start: segment.start.retract(&linear.freedoms, &by), ..segment.clone() };
-                let cost = finite(self.residuals(built, &moved).norm_squared());
-                let is_fair = cost <= linear.cost + NEXT_TO_NOTHING;
-                if best.as_ref().is_none_or(|b| cost < b.1) {
-                    best = Some((moved, cost));
+                let r = self.residuals(built, &moved);
+                let is_fair = finite(r.norm_squared()) <= linear.cost + NEXT_TO_NOTHING;
+                if best.as_ref().is_none_or(|b| finite(r.norm_squared()) < finite(b.1.norm_squared())) {
+                    best = Some((moved, r));
                 }
                 if is_fair {
                     break;
                 }
             }
-            best.unwrap_or_else(|| (segment.clone(), f64::INFINITY))
+            match best {
+                Some(best) => self.settled(built, best, linear.columns.as_ref()),
+                None => (segment.clone(), f64::INFINITY),
+            }
         };
         let (segments, costs): (Vec<Segment>, Vec<f64>) = segments.par_iter().zip(linear.par_iter()).map(of).unzip();
         (segments, costs.iter().sum())

@@ -94,6 +94,10 @@ impl Standing {
         effort: Effort,
     ) -> Result<Self, DiagnoseError> {
         let mut rungs = self.rungs.clone();
+        // What short windows can tell they tell before longer ones, in which there are more wrong valleys, are asked.
+        if !rungs.is_empty() {
+            windows = fit_in_turns(stage, plant, windows.set, windows.segments, effort)?;
+        }
         while let Some(rung) = rungs.first() {
             let settled = fit(stage, plant, windows.set.frozen(), rung.clone(), Effort::STARTS)?;
             let tried = fit_in_turns(stage, plant, windows.set.clone(), settled.segments, effort)?;

@@ -16,6 +16,8 @@ use std::sync::Arc;
 
 /// Root mean square in windows beyond which shorter ones are looked at.
 pub(crate) const STEEP: f64 = 8.0;
+/// Standard deviations of a segment's cost beyond which it is missed.
+pub(crate) const MISSED: f64 = 6.0;
 /// A shorter window's share of the last.
 const SHORTER: f64 = 0.25;
 /// Samples of the sparsest reading that a window has at least.
@@ -61,7 +63,7 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
     let mut some = nominal.clone();
     let (mut length, mut many) = (window, 1.0);
     let mut rungs = Vec::new();
-    while some.rms() > STEEP && SHORTER * length > shortest(stage.tapes) {
+    while calc_miss(stage, &some) > STEEP && SHORTER * length > shortest(stage.tapes) {
         rungs.insert(0, representative(stage, &some, many).segments);
         (length, many) = (length * SHORTER, many / SHORTER);
         let segments = cut(&nominal.built, stage.tapes, Some(length), |t| t.role == Role::Fit);
@@ -90,6 +92,17 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
         some = together(some, long);
     }
     Ok(Stretches { windows: some, rungs, whole: first })
+}
+
+/// Root mean square over the segments that are missed: a few among many that are followed count like many.
+fn calc_miss(stage: &Stage<'_>, fit: &Fit) -> f64 {
+    let of = |s: &Segment| {
+        let (cost, n) = (stage.residuals(&fit.built, s).norm_squared(), stage.count(s) as f64);
+        if cost > n + MISSED * (2.0 * n).sqrt() { (cost, n) } else { (0.0, 0.0) }
+    };
+    let all: Vec<(f64, f64)> = fit.segments.par_iter().map(of).collect();
+    let (cost, n) = all.iter().fold((0.0, 0.0), |sum, s| (sum.0 + s.0, sum.1 + s.1));
+    (cost / f64::max(n, 1.0)).sqrt()
 }
 
 /// The shortest window that the sparsest reading fills.
