@@ -132,6 +132,8 @@ impl Effort {
 
 /// Promised fall of the cost below which a fit has converged whatever its size.
 const NEXT_TO_NOTHING: f64 = 0.3;
+/// Share of what old derivatives promise that a step along them must bring for a further one.
+const SERVES: f64 = 0.3;
 /// Most dampings tried for one linearisation.
 const DAMPINGS: usize = 7;
 
@@ -245,7 +247,7 @@ fn iterate(
                 // A step that had to be shortened says nothing about the end of the way, nor does one along old derivatives.
                 let is_plain = trial == 0 && !was_known;
                 now.converged = !was_blind && is_plain && gained < NEXT_TO_NOTHING.max(effort.share * now.excess());
-                if trial > 0 && was_known {
+                if was_known && (trial > 0 || gained < SERVES * promised) {
                     now.segments.iter_mut().for_each(|s| s.columns = None);
                 }
                 return Ok((damping * 0.1).max(1e-9));

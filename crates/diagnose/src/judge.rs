@@ -61,22 +61,25 @@ pub fn judge(
         let first = |windows: &[Segment]| joined(windows, stage.tapes);
         let mut runs = first(&windows);
         begin_from(&mut runs, &known.segments);
-        let whole = follow_with(stage, plant, set.clone(), &runs, Effort::JUDGED)?;
+        let mut whole = follow_with(stage, plant, set.clone(), &runs, Effort::JUDGED)?;
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
-        let is_near = is_last(known) && whole.rms() < PLAUSIBLE;
-        let whole = if is_near {
+        if is_last(known) && known.rms() < PLAUSIBLE {
             let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED.iterations, Effort::JUDGED.share));
-            fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?
-        } else {
-            whole
-        };
-        if whole.rms() < NEAR {
-            stage.along(&built, &whole.segments, &mut windows);
+            whole = fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?;
         }
-        let windowed = fit(stage, plant, set.clone(), windows, Effort::JUDGED)?;
-        let far = whole.rms() >= NEAR;
-        let whole =
-            if far { follow_with(stage, plant, set, &first(&windowed.segments), Effort::JUDGED)? } else { whole };
+        let in_windows = |whole: &Fit, mut windows: Vec<Segment>| {
+            if whole.rms() < NEAR {
+                stage.along(&built, &whole.segments, &mut windows);
+            }
+            fit(stage, plant, set.clone(), windows, Effort::JUDGED)
+        };
+        let mut windowed = in_windows(&whole, windows)?;
+        if whole.rms() >= NEAR {
+            whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), Effort::JUDGED)?;
+            if whole.rms() < NEAR {
+                windowed = in_windows(&whole, windowed.segments)?;
+            }
+        }
         Ok((predict(windowed), predict(whole)))
     };
     let before = of(nominal)?;

@@ -8,8 +8,9 @@ use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::Hypothesis;
 use crate::linear::{Segment, Stage};
-use crate::plant::Plant;
+use crate::plant::{Built, Plant};
 use crate::stretches::STEEP;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Schwarz's criterion.
@@ -46,11 +47,7 @@ impl Standing {
         }
         let is_near = stage.cost(&self.windows.built, &self.windows.segments) < NEAR * NEAR * self.windows.count as f64;
         if self.follows() || !is_near && self.reach <= STEEP {
-            for segment in &mut self.windows.segments {
-                segment.columns = None;
-                let r = stage.residuals(&self.windows.built, segment);
-                segment.weight = (r.len() as f64 / r.norm_squared()).min(1.0);
-            }
+            weigh(stage, &self.windows.built, &mut self.windows.segments);
         }
         self.windows.cost = stage.cost(&self.windows.built, &self.windows.segments);
         (self.windows.count, self.windows.noise) = stage.noise(&self.windows.segments);
@@ -100,10 +97,11 @@ impl Standing {
         }
         while let Some(rung) = rungs.first() {
             let settled = fit(stage, plant, windows.set.frozen(), rung.clone(), Effort::STARTS)?;
-            let tried = fit_in_turns(stage, plant, windows.set.clone(), settled.segments, effort)?;
+            let settled = Fit { set: windows.set.clone(), ..settled };
+            let tried = fit_robustly(stage, plant, settled, effort)?;
             let found = tried.set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
             stage.work.watch.step(&format!("  windows of {:.3} s: error {:.3}, {found}", length_of(rung), tried.rms()));
-            if tried.rms() > STEEP {
+            if tried.rms() > STEEP && lost(stage, &tried) > FEW {
                 break;
             }
             windows = tried;
@@ -112,14 +110,31 @@ impl Standing {
         let set = windows.set.clone();
         let segments = begun_as(&self.whole.segments, &windows.segments);
         // Where windows had to be shortened, whole runs are far off until the longest windows follow well.
-        let is_far = self.reach <= STEEP && (!rungs.is_empty() || windows.rms() > NEAR);
+        let is_far = self.reach <= STEEP && (!rungs.is_empty() || lost(stage, &windows) > FEW);
         let whole = match is_far {
             true => Fit { segments, set: set.clone(), built: windows.built.clone(), ..self.whole.clone() },
-            false => Fit { set: set.clone(), ..follow(stage, plant, set.frozen(), &segments)? },
+            false => Fit { set: set.clone(), ..self.followed(stage, plant, set.frozen(), &segments)? },
         };
         let standing = Self { windows, whole, rungs, reach: self.reach };
         // They begin to follow: from now on they judge.
         if standing.follows() { standing.refit(stage, plant, set, effort) } else { Ok(standing) }
+    }
+
+    /// Whole runs of a set that most windows follow; where these had to be shortened, runs that stand in wrong valleys are begun anew.
+    fn followed(
+        &self,
+        stage: &Stage<'_>,
+        plant: &Plant,
+        set: EffectSet,
+        segments: &[Segment],
+    ) -> Result<Fit, DiagnoseError> {
+        let whole = follow(stage, plant, set, segments)?;
+        if self.reach > STEEP || whole.rms() < NEAR {
+            return Ok(whole);
+        }
+        let segments =
+            stage.begun_anew(&whole.built, &whole.segments, (Effort::STARTS.iterations, Effort::STARTS.share));
+        fit(stage, plant, whole.set, segments, Effort { iterations: 1, ..Effort::STARTS })
     }
 
     /// Whether this standing is better than another: whole runs that follow, longer windows that do, then the criterion.
@@ -192,6 +207,40 @@ fn fit_in_turns(
     Ok(now)
 }
 
+/// Weights by which no segment counts for more than all that is in it: those that stand in wrong valleys do not drag the others along.
+fn weigh(stage: &Stage<'_>, built: &Built, segments: &mut [Segment]) {
+    let of = |segment: &mut Segment| {
+        (segment.columns, segment.weight) = (None, 1.0);
+        let r = stage.residuals(built, segment);
+        segment.weight = (r.len() as f64 / r.norm_squared()).min(1.0);
+    };
+    segments.par_iter_mut().for_each(of);
+}
+
+/// A fit of segments of which some may stand in wrong valleys: weighed, and these begun anew, as long as that helps.
+fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) -> Result<Fit, DiagnoseError> {
+    let anew = |now: &Fit| {
+        let starts = (Effort::STARTS.iterations, Effort::STARTS.share);
+        let mut segments = stage.begun_anew(&now.built, &now.segments, starts);
+        segments.iter_mut().for_each(|s| (s.columns, s.weight) = (None, 1.0));
+        let cost = stage.cost(&now.built, &segments);
+        (segments, cost)
+    };
+    let (mut segments, mut cost) = anew(&now);
+    for _ in 0..TURNS {
+        weigh(stage, &now.built, &mut segments);
+        now = fit(stage, plant, now.set, segments, effort)?;
+        let before = cost;
+        (segments, cost) = anew(&now);
+        if cost > LOWER * before {
+            break;
+        }
+    }
+    let is_near = cost < NEAR * NEAR * now.count as f64;
+    let effort = if is_near { effort } else { Effort { iterations: 0, ..effort } };
+    fit(stage, plant, now.set, segments, effort)
+}
+
 /// Most times that starts are begun anew.
 const TURNS: usize = 4;
 /// Share of the cost below which that must bring it to be worth another fit.
@@ -201,6 +250,16 @@ fn length_of(segments: &[Segment]) -> f64 {
     segments.first().map_or(0.0, |s| s.span.to - s.span.from)
 }
 
+/// Share of the windows that are not near the model.
+fn lost(stage: &Stage<'_>, windows: &Fit) -> f64 {
+    let is_lost = |s: &&Segment| {
+        stage.residuals(&windows.built, s).norm_squared() > NEAR * NEAR * s.weight * stage.count(s) as f64
+    };
+    windows.segments.par_iter().filter(is_lost).count() as f64 / windows.segments.len().max(1) as f64
+}
+
+/// Share of lost windows up to which they are taken for stuck in wrong valleys, not for a wrong model.
+const FEW: f64 = 0.25;
 /// Root mean square in windows from which on each counts for what is in it.
 const NEAR: f64 = 3.0;
 /// Root mean square over whole runs from the starts of windows beyond which no start makes them follow.

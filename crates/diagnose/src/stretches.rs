@@ -89,6 +89,8 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
         for begun in joined(&long.segments.iter().filter(begins).cloned().collect::<Vec<_>>(), stage.tapes) {
             first.iter_mut().filter(|s| s.run == begun.run).for_each(|s| s.clone_from(&begun));
         }
+        // What is slow keeps its weight as windows grow.
+        rungs.iter_mut().for_each(|rung| rung.extend(long.segments.iter().cloned()));
         some = together(some, long);
     }
     Ok(Stretches { windows: some, rungs, whole: first })
