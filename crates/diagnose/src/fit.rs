@@ -240,7 +240,6 @@ fn iterate(
         let actual: Vec<f64> = slots.iter().map(|(m, c)| set.members[*m].1[*c] - now.set.members[*m].1[*c]).collect();
         if let Ok(built) = plant.build(&set.effects()) {
             let (segments, cost) = stage.follow(&built, &now.segments, &linear, &actual);
-            if std::env::var("SDBG").is_ok() { eprintln!("DBG it {} trial {trial} damping {damping:.1e} known {was_known} cost {:.1} -> {:.1} promised {:.1} theta {:?} sizes {:?}", now.iterations, now.cost, cost, promised, theta.as_slice(), sizes); }
             if cost < now.cost {
                 let gained = now.cost - cost;
                 (now.set, now.built, now.segments, now.cost) = (set, built, segments, cost);

@@ -19,6 +19,7 @@ pub mod hypothesis;
 pub mod judge;
 pub mod linear;
 pub mod locate;
+mod lost;
 mod number;
 mod output;
 mod pace;

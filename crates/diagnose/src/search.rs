@@ -56,6 +56,10 @@ pub struct Limits {
 
 /// Refits of a first look, and of a kept set.
 const LOOK: Effort = Effort { iterations: 6, share: 2e-3, reuse: true };
+/// Fits of a set that may be far off.
+const GLANCE: Effort = Effort { iterations: 2, share: 2e-2, reuse: true };
+/// Growth of the error by which a member that is taken out shows that it is needed.
+const NECESSARY: f64 = 1.3;
 /// Until it has converged as far as the next round needs it; all samples fit the last set to the end.
 const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, reuse: true };
 /// Promise relative to the best below which a hypothesis is not refitted.
@@ -122,7 +126,7 @@ pub fn search(
         of_round.for_each(|t| t.kept = format!("{} at {}", t.name, t.place) == added);
         let set = best.judge().set.clone();
         refine(stage, &best);
-        now = best.refit(stage, plant, set, WHOLE)?;
+        now = best.refit_here(stage, plant, set, WHOLE)?;
         let found = now.judge().set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
         stage.work.watch.step(&format!("kept {added}: {}, {found}", errors(&now)));
         now = now.weighted(stage);
@@ -240,8 +244,6 @@ fn refit_promising(
         let (label, share) = (&h.screens[score.point].label, 100.0 * score.score / here.cost);
         stage.work.watch.step(&format!("  {} {label} promises {share:.1} % of the cost", h.title()));
     }
-    if std::env::var("SDBG").is_ok() { for score in scores { let h=&all[score.hypothesis]; if h.place.starts_with("contact") { eprintln!("DBG {} {} {:.1} start {:?}", h.title(), h.screens[score.point].label, score.score, score.start); } }
-      for s in &here.segments { let r=stage.residuals(&here.built,s); eprintln!("DBG seg run {} {:.3}-{:.3} n {} w {:.5} rms {:.2}", s.run, s.span.from, s.span.to, r.len(), s.weight, (r.norm_squared()/r.len() as f64/s.weight).sqrt()); } }
     let mut ready: Vec<(usize, Fit)> = Vec::new();
     for score in interesting {
         let h = &all[score.hypothesis];
@@ -269,8 +271,8 @@ fn refit_promising(
             ready.push((at, tried));
         }
     }
-    // Of several starts of one hypothesis the best end counts.
-    ready.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    // Of several starts of one hypothesis the best end counts, and of laws that do alike the plainer.
+    ready.sort_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)));
     let mut seen = Vec::new();
     ready.retain(|r| {
         !seen.contains(&r.0) && {
@@ -382,6 +384,12 @@ fn prune(stage: &Stage<'_>, plant: &Plant, mut now: Standing) -> Result<Standing
     let mut member = 0;
     while now.judge().set.members.len() > 1 && member < now.judge().set.members.len() {
         let less = now.judge().set.without(member);
+        // What nothing near can do without stays.
+        let near = fit(stage, plant, less.clone(), now.judge().segments.clone(), GLANCE)?;
+        if near.rms() > NECESSARY * now.judge().rms() {
+            member += 1;
+            continue;
+        }
         let tried = now.refit(stage, plant, less, LOOK)?;
         if !now.is_better(&tried) {
             let set = tried.judge().set.clone();

@@ -8,6 +8,7 @@ use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::Hypothesis;
 use crate::linear::{Segment, Stage};
+use crate::lost::{self, FEW, NEAR};
 use crate::plant::{Built, Plant};
 use crate::stretches::STEEP;
 use rayon::prelude::*;
@@ -82,6 +83,22 @@ impl Standing {
         self.climbed(stage, plant, windows, effort)
     }
 
+    /// The same, but no higher than it stands.
+    pub(crate) fn refit_here(
+        &self,
+        stage: &Stage<'_>,
+        plant: &Plant,
+        set: EffectSet,
+        effort: Effort,
+    ) -> Result<Self, DiagnoseError> {
+        if self.follows() || self.rungs.is_empty() {
+            return self.refit(stage, plant, set, effort);
+        }
+        let windows = fit_in_turns(stage, plant, set, self.windows.segments.clone(), effort)?;
+        let whole = Fit { set: windows.set.clone(), built: windows.built.clone(), ..self.whole.clone() };
+        Ok(Self { windows, whole, ..self.clone() })
+    }
+
     /// The standing of a set that was fitted in windows, in the longest windows that follow it, and over whole runs where these do.
     pub(crate) fn climbed(
         &self,
@@ -101,7 +118,7 @@ impl Standing {
             let tried = fit_robustly(stage, plant, settled, effort)?;
             let found = tried.set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
             stage.work.watch.step(&format!("  windows of {:.3} s: error {:.3}, {found}", length_of(rung), tried.rms()));
-            if tried.rms() > STEEP && lost(stage, &tried) > FEW {
+            if tried.rms() > STEEP && lost::calc_share(stage, &tried) > FEW {
                 break;
             }
             windows = tried;
@@ -110,7 +127,7 @@ impl Standing {
         let set = windows.set.clone();
         let segments = begun_as(&self.whole.segments, &windows.segments);
         // Where windows had to be shortened, whole runs are far off until the longest windows follow well.
-        let is_far = self.reach <= STEEP && (!rungs.is_empty() || lost(stage, &windows) > FEW);
+        let is_far = self.reach <= STEEP && (!rungs.is_empty() || lost::calc_share(stage, &windows) > FEW);
         let whole = match is_far {
             true => Fit { segments, set: set.clone(), built: windows.built.clone(), ..self.whole.clone() },
             false => Fit { set: set.clone(), ..self.followed(stage, plant, set.frozen(), &segments)? },
@@ -134,7 +151,8 @@ impl Standing {
         }
         let segments =
             stage.begun_anew(&whole.built, &whole.segments, (Effort::STARTS.iterations, Effort::STARTS.share));
-        fit(stage, plant, whole.set, segments, Effort { iterations: 1, ..Effort::STARTS })
+        let whole = fit(stage, plant, whole.set, segments, Effort { iterations: 1, ..Effort::STARTS })?;
+        Ok(lost::cut_off(stage, whole))
     }
 
     /// Whether this standing is better than another: whole runs that follow, longer windows that do, then the criterion.
@@ -142,9 +160,15 @@ impl Standing {
         match (self.follows(), other.follows()) {
             (true, false) => true,
             (false, true) => false,
+            (true, true) if self.is_shorter(other) || other.is_shorter(self) => other.is_shorter(self),
             (false, false) if self.rungs.len() != other.rungs.len() => self.rungs.len() < other.rungs.len(),
             _ => criterion(self.judge()) < criterion(other.judge()),
         }
+    }
+
+    /// Whether clearly less of the runs is followed than by another.
+    fn is_shorter(&self, other: &Self) -> bool {
+        (self.whole.count as f64) < SHORTER * other.whole.count as f64
     }
 
     /// Whether what another standing is judged by is the same.
@@ -250,18 +274,8 @@ fn length_of(segments: &[Segment]) -> f64 {
     segments.first().map_or(0.0, |s| s.span.to - s.span.from)
 }
 
-/// Share of the windows that are not near the model.
-fn lost(stage: &Stage<'_>, windows: &Fit) -> f64 {
-    let is_lost = |s: &&Segment| {
-        stage.residuals(&windows.built, s).norm_squared() > NEAR * NEAR * s.weight * stage.count(s) as f64
-    };
-    windows.segments.par_iter().filter(is_lost).count() as f64 / windows.segments.len().max(1) as f64
-}
-
-/// Share of lost windows up to which they are taken for stuck in wrong valleys, not for a wrong model.
-const FEW: f64 = 0.25;
-/// Root mean square in windows from which on each counts for what is in it.
-const NEAR: f64 = 3.0;
+/// Share of what another set follows below which a set follows less.
+const SHORTER: f64 = 0.97;
 /// Root mean square over whole runs from the starts of windows beyond which no start makes them follow.
 const HOPELESS: f64 = 3000.0;
 /// Root mean square over whole runs beyond which they do not follow the model at all, and windows judge.

@@ -1,0 +1,84 @@
+//! Runs that a model follows up to an instant only: something happened on the rig that it does not have (a bump, a part that caught an edge).
+//!
+//! Where most runs are followed to the end, the others are judged as far as they are followed, and that is said; where most are lost, it is
+//! the model that is wrong.
+
+use crate::fit::{Effort, Fit};
+use crate::linear::{Segment, Stage};
+use crate::plant::Built;
+use rayon::prelude::*;
+
+/// Root mean square up to which a stretch is near the model.
+pub(crate) const NEAR: f64 = 3.0;
+/// Share of the windows, and of whole runs, that may be lost where the model is not doubted for it.
+pub(crate) const FEW: f64 = 0.25;
+const RUNS: f64 = 0.4;
+/// Share of a run that must be followed at least.
+const FIRST: f64 = 0.25;
+/// Parts of a run, one of which is lost where the run is.
+const PARTS: usize = 40;
+/// Times that a start is fitted to what it follows.
+const TURNS: usize = 3;
+
+fn is_near(stage: &Stage<'_>, built: &Built, segment: &Segment) -> bool {
+    let cost = stage.residuals(built, segment).norm_squared();
+    cost <= NEAR * NEAR * segment.weight * stage.count(segment) as f64
+}
+
+/// Share of a fit's segments that are not near the model.
+pub(crate) fn calc_share(stage: &Stage<'_>, fit: &Fit) -> f64 {
+    let lost = fit.segments.par_iter().filter(|s| !is_near(stage, &fit.built, s)).count();
+    lost as f64 / fit.segments.len().max(1) as f64
+}
+
+/// A fit of whole runs with those that are lost cut off where the model loses them; as it was where most are lost.
+pub(crate) fn cut_off(stage: &Stage<'_>, whole: Fit) -> Fit {
+    let share = calc_share(stage, &whole);
+    if share == 0.0 || share > RUNS {
+        return whole;
+    }
+    let of = |segment: &Segment| match is_near(stage, &whole.built, segment) {
+        true => segment.clone(),
+        false => followed_part(stage, &whole.built, segment).unwrap_or_else(|| segment.clone()),
+    };
+    let segments: Vec<Segment> = whole.segments.par_iter().map(of).collect();
+    let (count, noise) = stage.noise(&segments);
+    Fit { cost: stage.cost(&whole.built, &segments), count, noise, segments, ..whole }
+}
+
+/// The first part of a run, as far as a start leads along it; none where that is too little.
+fn followed_part(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
+    let mut now = Segment { columns: None, ..run.clone() };
+    now.span.to = run.span.from + FIRST * (run.span.to - run.span.from);
+    let starts = (Effort::STARTS.iterations, Effort::STARTS.share);
+    now = stage.begun_anew(built, &[now], starts).pop()?;
+    for _ in 0..TURNS {
+        let end = followed_until(stage, built, &Segment { span: run.span, ..now.clone() });
+        if end <= now.span.to {
+            break;
+        }
+        now.span.to = end;
+        now = stage.fit_starts(built, &[now], starts).pop()?.segment;
+    }
+    (is_near(stage, built, &now)).then_some(Segment { columns: None, ..now })
+}
+
+/// End of the last part of a run before the first that is lost, s.
+fn followed_until(stage: &Stage<'_>, built: &Built, run: &Segment) -> f64 {
+    let r = stage.residuals(built, run);
+    let tape = &stage.tapes[run.run];
+    let range = tape.range(run.span);
+    let part_of = |time: f64| {
+        let share = (time - run.span.from) / (run.span.to - run.span.from);
+        ((share * PARTS as f64) as usize).min(PARTS - 1)
+    };
+    let mut parts = [(0.0, 0.0); PARTS];
+    for i in range.clone() {
+        let (first, next) = (tape.offsets[i] - tape.offsets[range.start], tape.offsets[i + 1] - tape.offsets[range.start]);
+        let part = &mut parts[part_of(tape.events[i].time)];
+        part.0 += r.rows(first, next - first).norm_squared();
+        part.1 += (next - first) as f64;
+    }
+    let lost = parts.iter().position(|(cost, n)| !(*cost <= NEAR * NEAR * n));
+    run.span.from + lost.unwrap_or(PARTS) as f64 / PARTS as f64 * (run.span.to - run.span.from)
+}
