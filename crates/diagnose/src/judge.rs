@@ -3,6 +3,7 @@
 use crate::error::DiagnoseError;
 use crate::fit::{Effort, Fit, fit};
 use crate::linear::{Segment, Stage};
+use crate::lost;
 use crate::plant::Plant;
 use crate::standing::follow_with;
 use crate::stretches::{cut, joined};
@@ -67,17 +68,18 @@ pub fn judge(
             let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED.iterations, Effort::JUDGED.share));
             whole = fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?;
         }
-        let in_windows = |whole: &Fit, mut windows: Vec<Segment>| {
-            if whole.rms() < NEAR {
-                stage.along(&built, &whole.segments, &mut windows);
-            }
-            fit(stage, plant, set.clone(), windows, Effort::JUDGED)
+        let near = |whole: &Fit| -> Vec<Segment> {
+            whole.segments.iter().filter(|s| lost::is_near(stage, &built, s)).cloned().collect()
         };
-        let mut windowed = in_windows(&whole, windows)?;
-        if whole.rms() >= NEAR {
+        stage.along(&built, &near(&whole), &mut windows);
+        let mut windowed = fit(stage, plant, set.clone(), windows, Effort::JUDGED)?;
+        if whole.rms() >= lost::NEAR {
+            let known = near(&whole).len();
             whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), Effort::JUDGED)?;
-            if whole.rms() < NEAR {
-                windowed = in_windows(&whole, windowed.segments)?;
+            let found = near(&whole);
+            if found.len() > known {
+                stage.along(&built, &found, &mut windowed.segments);
+                windowed = fit(stage, plant, set, windowed.segments, Effort::JUDGED)?;
             }
         }
         Ok((predict(windowed), predict(whole)))
@@ -89,8 +91,6 @@ pub fn judge(
 
 /// Root mean square over whole runs up to which starts are doubted before the model is.
 const PLAUSIBLE: f64 = 8.0;
-/// Root mean square over whole runs up to which windows begin where the whole run is.
-const NEAR: f64 = 3.0;
 
 /// Takes the starts of segments that are known already.
 fn begin_from(segments: &mut [Segment], known: &[Segment]) {

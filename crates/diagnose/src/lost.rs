@@ -20,7 +20,8 @@ const PARTS: usize = 40;
 /// Times that a start is fitted to what it follows.
 const TURNS: usize = 3;
 
-fn is_near(stage: &Stage<'_>, built: &Built, segment: &Segment) -> bool {
+/// Whether a stretch is near the model.
+pub(crate) fn is_near(stage: &Stage<'_>, built: &Built, segment: &Segment) -> bool {
     let cost = stage.residuals(built, segment).norm_squared();
     cost <= NEAR * NEAR * segment.weight * stage.count(segment) as f64
 }
@@ -74,11 +75,12 @@ fn followed_until(stage: &Stage<'_>, built: &Built, run: &Segment) -> f64 {
     };
     let mut parts = [(0.0, 0.0); PARTS];
     for i in range.clone() {
-        let (first, next) = (tape.offsets[i] - tape.offsets[range.start], tape.offsets[i + 1] - tape.offsets[range.start]);
+        let (first, next) =
+            (tape.offsets[i] - tape.offsets[range.start], tape.offsets[i + 1] - tape.offsets[range.start]);
         let part = &mut parts[part_of(tape.events[i].time)];
         part.0 += r.rows(first, next - first).norm_squared();
         part.1 += (next - first) as f64;
     }
-    let lost = parts.iter().position(|(cost, n)| !(*cost <= NEAR * NEAR * n));
+    let lost = parts.iter().position(|(cost, n)| *cost > NEAR * NEAR * n || cost.is_nan());
     run.span.from + lost.unwrap_or(PARTS) as f64 / PARTS as f64 * (run.span.to - run.span.from)
 }

@@ -35,6 +35,8 @@ pub(crate) struct Findings {
     pub located: Located,
     pub nominal: Fit,
     pub found: Fit,
+    /// Whether whole runs follow the corrected model, so that it was fitted to them.
+    pub follows: bool,
     pub attempts: Vec<Attempt>,
     pub verdict: Verdict,
     pub judgement: Judgement,
@@ -110,6 +112,7 @@ pub fn diagnose(
         located,
         nominal,
         found,
+        follows,
         attempts,
         judgement,
         timings: clock.timings,

@@ -10,6 +10,7 @@ use crate::error::DiagnoseError;
 use crate::fit::{Effort, Fit, fit};
 use crate::hypothesis::{AT_CONTACT, Hypothesis, Tier};
 use crate::linear::{Segment, Stage};
+use crate::lost;
 use crate::pace;
 use crate::plant::Plant;
 use crate::replay::Pace;
@@ -126,7 +127,9 @@ pub fn search(
         of_round.for_each(|t| t.kept = format!("{} at {}", t.name, t.place) == added);
         let set = best.judge().set.clone();
         refine(stage, &best);
-        now = best.refit_here(stage, plant, set, WHOLE)?;
+        // What is far from the data yet is not worth fitting to the end.
+        let effort = if best.judge().rms() > lost::NEAR { LOOK } else { WHOLE };
+        now = best.refit_here(stage, plant, set, effort)?;
         let found = now.judge().set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
         stage.work.watch.step(&format!("kept {added}: {}, {found}", errors(&now)));
         now = now.weighted(stage);

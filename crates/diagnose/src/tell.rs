@@ -8,7 +8,7 @@ use crate::evidence::{
     self, Evidence, Heat, HeatRow, Hypothesis, Level, Parameter, Remark, Status, bin_edges, mean_squares,
 };
 use crate::fit::Fit;
-use crate::linear::Stage;
+use crate::linear::{Segment, Stage};
 use crate::run::Findings;
 use crate::vocabulary::unit;
 use nalgebra::DMatrix;
@@ -39,6 +39,7 @@ pub(crate) fn tell(
             .iter()
             .filter(|r| r.severity > record::Severity::Note)
             .map(|r| r.what.clone())
+            .chain(lost_runs(findings, stage))
             .collect(),
     };
     let evidence = Evidence {
@@ -55,6 +56,22 @@ pub(crate) fn tell(
         ..Evidence::default()
     };
     (diagnosis, evidence)
+}
+
+/// Runs that the corrected model follows up to an instant only.
+fn lost_runs(findings: &Findings, stage: &Stage<'_>) -> Vec<String> {
+    let of = |segment: &Segment| {
+        let tape = &stage.tapes[segment.run];
+        let (file, until) = (&tape.file, segment.span.to);
+        let is_cut = findings.follows && until < tape.span.1 && !findings.found.set.members.is_empty();
+        is_cut.then(|| {
+            format!(
+                "{file} is followed up to {until:.4} s only, as the other runs are to their ends: something else \
+                 happens there, and what comes later was not used for the fit."
+            )
+        })
+    };
+    findings.found.segments.iter().filter_map(of).collect()
 }
 
 fn discretisation(findings: &Findings) -> evidence::Discretisation {

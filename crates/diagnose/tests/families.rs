@@ -1,0 +1,189 @@
+//! One effect of every family, planted by the scenario into a recording that softdock makes itself, is found again at its place.
+//!
+//! Noise, rounding and unknown starts are those of the practice rigs; the run that judges is not one of those that are fitted.
+#![allow(clippy::unwrap_used)]
+
+use diagnose::diagnosis::{Diagnosis, Verdict};
+use diagnose::start::Start;
+use diagnose::synthesise;
+use diagnose::synthetic::as_recorded;
+use record::{RecordedRun, RecordingSet, Role, Series};
+use scenario::spec::{Effect, ParamValue};
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn effect(name: &str, place: &str, params: &[(&str, ParamValue)]) -> Effect {
+    let params = params.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
+    Effect { name: name.to_owned(), place: place.to_owned(), params }
+}
+
+fn number(x: f64) -> ParamValue {
+    ParamValue::Number(x)
+}
+
+fn vector(x: [f64; 3]) -> ParamValue {
+    ParamValue::Numbers(x.to_vec())
+}
+
+/// A target that tumbles for two minutes, three times.
+fn tumbler(planted: &Effect, seed: u64) -> Diagnosis {
+    let scenario = scenario::load(&root().join("scenarios/rigs/tumbler.toml"), &[]).unwrap();
+    let like = RecordingSet::load(&root().join("tests/recordings/tumble-inertia")).unwrap();
+    let mut with = scenario.clone();
+    with.effects.push(planted.clone());
+    let set = synthesise(with, &like, &as_recorded, seed).unwrap();
+    diagnose::diagnose(scenario, &set, &()).unwrap().0
+}
+
+/// A bar that a sum of three sines drives for six seconds, three times.
+fn swing(planted: &Effect) -> Diagnosis {
+    let scenario = scenario::load(&root().join("crates/diagnose/tests/rigs/swing.toml"), &[]).unwrap();
+    let mut with = scenario.clone();
+    with.effects.push(planted.clone());
+    let at_rest = |built: &diagnose::plant::Built, _: &diagnose::tape::Tape| Start::nominal(built);
+    let set = synthesise(with, &swings(), &at_rest, 3).unwrap();
+    diagnose::diagnose(scenario, &set, &()).unwrap().0
+}
+
+/// What drives the bar and when it is read; nothing measured yet.
+fn swings() -> RecordingSet {
+    let run = |k: u32| {
+        let phase = 1.7 * f64::from(k);
+        let ticks: Vec<f64> = (0..600).map(|i| f64::from(i) * 0.01).collect();
+        let torque = |t: &f64| {
+            let parts = [(1.1, 2.3, 0.0), (0.8, 5.9, phase), (0.5, 13.0, 2.0 * phase)];
+            let sum: f64 = parts.iter().map(|(a, w, p)| a * (w * t + p).sin()).sum();
+            (1e4 * sum).round() / 1e4
+        };
+        let efforts = ticks.iter().map(torque).collect();
+        let times: Vec<f64> = (0..=1200).map(|i| f64::from(i) * 0.005).collect();
+        let still = vec![0.0; times.len()];
+        let series = vec![
+            Series::new("joint.hinge.effort_command", ticks, efforts),
+            Series::with_quantum("joint.hinge.position", times.clone(), still.clone(), 1e-6),
+            Series::with_quantum("joint.hinge.velocity", times, still, 1e-5),
+        ];
+        let role = if k < 2 { Role::Fit } else { Role::Holdout };
+        RecordedRun { file: format!("run-{k}.csv"), role, note: String::new(), series }
+    };
+    let noise = [("joint.hinge.position".to_owned(), 2e-5), ("joint.hinge.velocity".to_owned(), 1e-3)];
+    RecordingSet {
+        rig: "swing".to_owned(),
+        title: "planted".to_owned(),
+        noise: noise.into(),
+        runs: (0..3).map(run).collect(),
+        ..RecordingSet::default()
+    }
+}
+
+/// Right name and place, and predictions of the unseen run that noise alone limits.
+fn check(diagnosis: &Diagnosis, planted: &Effect) {
+    let found: Vec<(&str, &str)> = diagnosis.effects.iter().map(|e| (e.name.as_str(), e.place.as_str())).collect();
+    assert_eq!(diagnosis.verdict, Verdict::Explained, "{planted:?}: {found:?} {:?}", diagnosis.error);
+    assert_eq!(found, [(planted.name.as_str(), planted.place.as_str())], "{:?}", diagnosis.effects);
+    let holdout = diagnosis.error.holdout.unwrap();
+    // Nothing restores a hinge: where it sticks and slips, free runs go apart under the true model too, and windows judge.
+    let after = holdout.after.min(diagnosis.error.windowed.after);
+    assert!(after < 1.06 && holdout.before > 1.15 * holdout.after, "{planted:?}: {:?}", diagnosis.error);
+}
+
+/// The number that was planted comes back within a tenth.
+fn check_number(diagnosis: &Diagnosis, key: &str, planted: f64) {
+    let found = diagnosis.effects[0].params[key].numbers().unwrap()[0];
+    assert!((found / planted - 1.0).abs() < 0.1, "{key}: {found}, planted {planted}");
+}
+
+#[test]
+fn torques_on_a_free_body() {
+    let body = "body:target";
+    let torque = [("vector", vector([3e-4, -4e-4, 2e-4])), ("frame", ParamValue::Text("body".into()))];
+    let cases = [
+        (effect("constant-torque", body, &torque), None),
+        (effect("angular-damping", body, &[("c", number(0.03))]), Some(("c", 0.03))),
+    ];
+    for (planted, told) in cases {
+        let diagnosis = tumbler(&planted, 5);
+        check(&diagnosis, &planted);
+        if let Some((key, value)) = told {
+            check_number(&diagnosis, key, value);
+        }
+    }
+}
+
+#[test]
+fn parts_that_move_inside_a_free_body() {
+    let body = "body:target";
+    let slosh = [
+        ("mass", number(20.0)),
+        ("frequency", number(0.13)),
+        ("damping", number(0.02)),
+        ("position", vector([0.3, -0.1, 0.4])),
+    ];
+    let panel = [("frequency", number(0.05)), ("damping", number(0.01)), ("coupling", vector([4.0, 1.0, 2.0]))];
+    for planted in [effect("slosh", body, &slosh), effect("flexible-appendage", body, &panel)] {
+        check(&tumbler(&planted, 5), &planted);
+    }
+}
+
+#[test]
+fn faults_of_sensors() {
+    let gyro = "sensor:body.target.angular_velocity";
+    let cases = [
+        effect("sensor-scale", gyro, &[("scale", number(1.01))]),
+        effect("sensor-misalignment", gyro, &[("angle", vector([0.01, -0.006, 0.004]))]),
+        effect("sensor-delay", "sensor:body.target.orientation", &[("delay", number(0.15))]),
+    ];
+    for planted in cases {
+        check(&tumbler(&planted, 5), &planted);
+    }
+}
+
+#[test]
+fn friction_and_springs_of_a_joint() {
+    let hinge = "joint:hinge";
+    let cable = [("k", number(0.4)), ("q_rest", number(0.1))];
+    let cases = [
+        (effect("joint-viscous-friction", hinge, &[("b", number(0.05))]), ("b", 0.05)),
+        (effect("joint-coulomb-friction", hinge, &[("c", number(0.1))]), ("c", 0.1)),
+        (effect("joint-cable-stiffness", hinge, &cable), ("k", 0.4)),
+    ];
+    for (planted, (key, value)) in cases {
+        let diagnosis = swing(&planted);
+        check(&diagnosis, &planted);
+        check_number(&diagnosis, key, value);
+    }
+}
+
+#[test]
+fn faults_of_a_drive() {
+    let hinge = "joint:hinge";
+    let cases = [
+        (effect("actuator-delay", hinge, &[("delay", number(0.012))]), ("delay", 0.012)),
+        (effect("actuator-lag", hinge, &[("time_constant", number(0.02))]), ("time_constant", 0.02)),
+        (effect("actuator-saturation", hinge, &[("limit", number(1.5))]), ("limit", 1.5)),
+    ];
+    for (planted, (key, value)) in cases {
+        let diagnosis = swing(&planted);
+        check(&diagnosis, &planted);
+        check_number(&diagnosis, key, value);
+    }
+}
+
+/// Ten targets whose inertia the card states wrong by 0.3 to 1 %, otherwise as modelled.
+#[test]
+fn a_slightly_wrong_card_is_no_exotic_effect() {
+    for k in 0..10_u32 {
+        let size = 0.003 + 0.007 * f64::from(k) / 9.0;
+        let sign = |axis: u32| if (k + axis).is_multiple_of(2) { 1.0 } else { -1.0 };
+        let nominal = [95.0, 160.0, 215.0];
+        let mut inertia: Vec<f64> = nominal.iter().zip(0..3).map(|(i, axis)| i * (1.0 + size * sign(axis))).collect();
+        inertia.extend([0.0; 3]);
+        let planted = effect("body-inertia", "body:target", &[("inertia", ParamValue::Numbers(inertia))]);
+        let diagnosis = tumbler(&planted, 40 + u64::from(k));
+        assert!(matches!(diagnosis.verdict, Verdict::Explained | Verdict::NoMismatch), "{k}: {:?}", diagnosis.verdict);
+        assert!(diagnosis.effects.iter().all(|e| e.name == "body-inertia"), "{k}: {:?}", diagnosis.effects);
+    }
+}
