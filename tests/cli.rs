@@ -237,3 +237,26 @@ fn inspect_prints_figures_writes_a_plot_and_ends_by_what_it_finds() {
     assert_eq!(output.status.code(), Some(3));
     assert!(error_of(&output).contains("recording.toml"), "{}", error_of(&output));
 }
+
+#[test]
+fn what_is_planted_is_written_as_a_recording_that_the_seed_decides() {
+    let dir = tempfile::tempdir().unwrap();
+    let plant = |name: &str, seed: &str, effect: &str| {
+        let (out, key) = (place(&dir, name), place(&dir, &format!("keys/{name}.json")));
+        let like = ["plant", "scenarios/rigs/tumbler.toml", "--like", "tests/recordings/tumble-inertia"];
+        let rest = ["--seed", seed, "--effect", effect, "--out", text(&out), "--key", text(&key)];
+        let output = softdock(&[&like[..], &rest[..]].concat());
+        (output, out, key)
+    };
+    let damping = "name = \"angular-damping\", place = \"body:target\", c = 0.02";
+    let [a, b, c] = [("a", "4"), ("b", "4"), ("c", "5")].map(|(name, seed)| plant(name, seed, damping));
+    assert_eq!(a.0.status.code(), Some(0), "{}", error_of(&a.0));
+    let run = |place: &Path| fs::read(place.join("run-02.csv")).unwrap();
+    assert!(run(&a.1) == run(&b.1) && run(&a.1) != run(&c.1));
+    let key: serde_json::Value = serde_json::from_slice(&fs::read(&a.2).unwrap()).unwrap();
+    assert_eq!(key["effects"][0]["params"]["c"], 0.02);
+    assert_eq!(softdock(&["inspect", text(&a.1)]).status.code(), Some(0));
+    let wrong = plant("d", "1", "name = \"angular-dumping\", place = \"body:target\", c = 0.02").0;
+    assert_eq!(wrong.status.code(), Some(3));
+    assert!(error_of(&wrong).contains("angular-damping"), "{}", error_of(&wrong));
+}
