@@ -150,7 +150,8 @@ fn located(findings: &Findings, stage: &Stage<'_>) -> Vec<LocatedPlace> {
         let mut places: Vec<(String, f64)> =
             all.ranked().into_iter().take(4).map(|p| (all.places[p].name.clone(), all.share(p))).collect();
         // A free force on a body fits what a contact does to it as well: where both do, the place that the search preferred comes first.
-        let is_preferred = |name: &str| findings.attempts.iter().any(|a| a.kept && a.place == name);
+        let preferred = findings.attempts.iter().find(|a| a.kept).map(|a| a.place.as_str());
+        let is_preferred = |name: &str| preferred == Some(name);
         let weight = |p: &(String, f64)| p.1 + if is_preferred(&p.0) { TIE } else { 0.0 };
         places.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
         places
