@@ -131,7 +131,7 @@ impl Bristle {
             slope.along = slope.across;
         }
         if self.damping > 0.0 {
-            let allowed = bound.scaled(self.stiffness).nearest(&force);
+            let allowed = bound.scaled(self.stiffness).hold(&force);
             if !allowed.inside {
                 slope = Slope { across: slope.across * allowed.shrink, along: 0.0, direction: allowed.normal };
                 force = allowed.s;
@@ -188,7 +188,7 @@ impl Bristle {
         let s_rate = if slides { trial.slip - edge.normal * outward } else { trial.slip };
         let mut force = -(self.stiffness * s + self.damping * s_rate);
         if self.damping > 0.0 {
-            force = bound.scaled(self.stiffness).nearest(&force).s;
+            force = bound.scaled(self.stiffness).hold(&force).s;
             if self.way == Return::Radial {
                 force = self.without_push(force, &s, &trial.slip, self.stiffness * s.dot(&s_rate));
             }

@@ -65,15 +65,27 @@ impl Ellipse {
         if self.is_round() {
             return self.nearest_on_disc(s);
         }
-        let s_along = s.dot(&self.grain);
-        let s_across = (s - self.grain * s_along).norm();
-        let share = |x: f64, axis: f64| if x == 0.0 { 0.0 } else { x / axis };
-        let size = share(s_along, self.along).hypot(share(s_across, self.across));
+        let size = self.calc_size(s);
         if size <= 1.0 {
             return Nearest { s: *s, inside: true, shrink: 1.0, normal: Vector3::zeros() };
         }
         let normal = s.try_normalize(0.0).unwrap_or_default();
-        Nearest { s: s / size, inside: false, shrink: 1.0 / size, normal }
+        let shrink = 1.0 / size.sqrt();
+        Nearest { s: s * shrink, inside: false, shrink, normal }
+    }
+
+    /// (s₁/a₁)² + (s₂/a₂)².
+    fn calc_size(&self, s: &Vector3<f64>) -> f64 {
+        let s_along = s.dot(&self.grain);
+        let s_across = s - self.grain * s_along;
+        let share = |x: f64, axis: f64| if x == 0.0 { 0.0 } else { x / (axis * axis) };
+        share(s_along * s_along, self.along) + share(s_across.norm_squared(), self.across)
+    }
+
+    /// The point of the bound in the direction of a deflection.
+    pub fn on_bound(&self, s: &Vector3<f64>) -> Vector3<f64> {
+        let size = self.calc_size(s);
+        if size > 0.0 { s / size.sqrt() } else { *s }
     }
 
     #[inline]

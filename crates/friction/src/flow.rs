@@ -115,7 +115,9 @@ impl Ellipse {
         }
         let stuck = self.calc_share_inside(&s, &(free - s));
         let met = s + (free - s) * stuck;
-        self.hold(&turned(&met, slip, (1.0 - stuck) * dt / pace)).s
+        let turned = turned(&met, slip, (1.0 - stuck) * dt / pace);
+        // Where an ellipse is wider in the new direction the slip, which is far faster, has filled it.
+        if self.is_round() { self.hold(&turned).s } else { self.on_bound(&turned) }
     }
 
     /// The share of the way from a deflection inside to one outside at which it meets the bound.
@@ -196,6 +198,25 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Where the bound widens with the direction a bristle that slides fills it: left inside, it would count as stuck, and its damper
+    /// would see all of the slip.
+    #[test]
+    fn on_an_ellipse_it_stays_on_the_bound_as_this_widens() {
+        let law = Bristle { across: 0.8, way: Return::Radial, damping: 40.0, ..LAW };
+        let across = Vector3::y() * (0.8 * law.calc_reach(20.0, 0.0));
+        let slip = [0.02, 0.1, 0.18].map(|angle: f64| 0.02 * Vector3::new(angle.sin(), angle.cos(), 0.0));
+        let path = SlipPath { slip, normal_force: [20.0; 3], elapsed: 4e-3 };
+        let (s, _) = law.flow(&across, 0.0, &Vector3::x(), &path);
+        assert!(s.norm() > 1.001 * across.norm(), "it has turned towards the wider axis: {s}");
+        let trial =
+            crate::Trial { s, slip: slip[2], normal_force: 20.0, grain: Vector3::x(), ..crate::Trial::default() };
+        let rate = law.eval_rate(&trial);
+        assert!(!rate.sticks);
+        // The damper sees the turn alone, c ω ρ: far below what the slip would give, c u = 0.8 N.
+        let turn = rate.force + s * law.stiffness;
+        assert!(turn.norm() < 0.01, "{turn}");
     }
 
     /// Explicit methods lose their hold where the normal force goes: there the bristle lies along the slip at its bound.
