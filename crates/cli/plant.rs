@@ -12,7 +12,7 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 The runs have the commands, instants, noise figures and roundings of the recording that is given, and start where it says
-they did. Would the rig show a small payload? Plant one, and diagnose with the scenario that does not have it:
+they did. Would the rig show weak eddy currents? Plant them, and diagnose with the scenario that does not have them:
   softdock plant scenarios/rigs/tumbler.toml --like tests/recordings/tumble-inertia --out out/planted \\
       --effect 'name = \"angular-damping\", place = \"body:target\", c = 0.01' --key out/keys/planted.json
   softdock diagnose scenarios/rigs/tumbler.toml out/planted")]

@@ -9,7 +9,7 @@ use crate::linear::Stage;
 use crate::locate::{Located, WindowForce};
 use crate::reading::{Reading, Value};
 use crate::replay::Span;
-use crate::stretches::MISSED;
+use crate::stretches::is_missed;
 use crate::tape::Tape;
 use scenario::measure::Quantity;
 use spatial::Vec3;
@@ -26,8 +26,7 @@ pub(crate) fn when(stage: &Stage<'_>, nominal: &Fit) -> (f64, f64) {
     let end = stage.tapes.iter().map(|t| t.span.1).fold(0.0, f64::max);
     let missed = nominal.segments.iter().filter(|s| {
         let r = stage.residuals(&nominal.built, s);
-        let n = r.len() as f64;
-        r.norm_squared() - n > MISSED * (2.0 * n).sqrt()
+        is_missed(r.norm_squared(), r.len())
     });
     let (from, to) =
         missed.fold((f64::INFINITY, 0.0), |(from, to): (f64, f64), s| (from.min(s.span.from), to.max(s.span.to)));

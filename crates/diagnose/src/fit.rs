@@ -106,11 +106,21 @@ impl Fit {
         (2.0 * self.noise).sqrt()
     }
 
+    /// Whether the cost is more than noise leaves.
+    pub fn is_significant(&self) -> bool {
+        self.excess() > (SIGMAS * self.spread()).max(LEAST * self.noise)
+    }
+
     /// Root mean square of the residual, 1 for a perfect model.
     pub fn rms(&self) -> f64 {
         (self.cost / self.noise.max(f64::MIN_POSITIVE)).sqrt()
     }
 }
+
+/// Excess in standard deviations below which nothing is left to explain.
+const SIGMAS: f64 = 4.0;
+/// Excess per scalar that data sheets' noise figures do not vouch for.
+const LEAST: f64 = 0.03;
 
 /// How far a fit goes.
 #[derive(Clone, Copy, Debug)]
@@ -174,7 +184,7 @@ pub fn fit(
 
 /// The starts alone.
 fn fit_starts(stage: &Stage<'_>, set: EffectSet, built: Built, segments: &[Segment], effort: Effort) -> Fit {
-    let settled = stage.fit_starts(&built, segments, (effort.iterations, effort.share));
+    let settled = stage.fit_starts(&built, segments, effort);
     let (count, noise) = stage.noise(segments);
     Fit {
         set,

@@ -65,19 +65,19 @@ pub fn judge(
         let mut whole = follow_with(stage, plant, set.clone(), &runs, Effort::JUDGED)?;
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
         if is_last(known) && known.rms() < PLAUSIBLE {
-            let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED.iterations, Effort::JUDGED.share));
+            let anew = stage.begun_anew(&built, &whole.segments, Effort::JUDGED);
             whole = fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?;
         }
         let near = |whole: &Fit| -> Vec<Segment> {
             whole.segments.iter().filter(|s| lost::is_near(stage, &built, s)).cloned().collect()
         };
-        stage.along(&built, &near(&whole), &mut windows);
+        let followed = near(&whole);
+        stage.along(&built, &followed, &mut windows);
         let mut windowed = fit(stage, plant, set.clone(), windows, Effort::JUDGED)?;
         if whole.rms() >= lost::NEAR {
-            let known = near(&whole).len();
             whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), Effort::JUDGED)?;
             let found = near(&whole);
-            if found.len() > known {
+            if found.len() > followed.len() {
                 stage.along(&built, &found, &mut windowed.segments);
                 windowed = fit(stage, plant, set, windowed.segments, Effort::JUDGED)?;
             }

@@ -34,15 +34,16 @@ pub(crate) fn calc_share(stage: &Stage<'_>, fit: &Fit) -> f64 {
 
 /// A fit of whole runs with those that are lost cut off where the model loses them; as it was where most are lost.
 pub(crate) fn cut_off(stage: &Stage<'_>, whole: Fit) -> Fit {
-    let share = calc_share(stage, &whole);
+    let near: Vec<bool> = whole.segments.par_iter().map(|s| is_near(stage, &whole.built, s)).collect();
+    let share = near.iter().filter(|near| !**near).count() as f64 / near.len().max(1) as f64;
     if share == 0.0 || share > RUNS {
         return whole;
     }
-    let of = |segment: &Segment| match is_near(stage, &whole.built, segment) {
+    let of = |(segment, near): (&Segment, &bool)| match near {
         true => segment.clone(),
         false => followed_part(stage, &whole.built, segment).unwrap_or_else(|| segment.clone()),
     };
-    let segments: Vec<Segment> = whole.segments.par_iter().map(of).collect();
+    let segments: Vec<Segment> = whole.segments.par_iter().zip(&near).map(of).collect();
     let (count, noise) = stage.noise(&segments);
     Fit { cost: stage.cost(&whole.built, &segments), count, noise, segments, ..whole }
 }
@@ -51,15 +52,14 @@ pub(crate) fn cut_off(stage: &Stage<'_>, whole: Fit) -> Fit {
 fn followed_part(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
     let mut now = Segment { columns: None, ..run.clone() };
     now.span.to = run.span.from + FIRST * (run.span.to - run.span.from);
-    let starts = (Effort::STARTS.iterations, Effort::STARTS.share);
-    now = stage.begun_anew(built, &[now], starts).pop()?;
+    now = stage.begun_anew(built, &[now], Effort::STARTS).pop()?;
     for _ in 0..TURNS {
         let end = followed_until(stage, built, &Segment { span: run.span, ..now.clone() });
         if end <= now.span.to {
             break;
         }
         now.span.to = end;
-        now = stage.fit_starts(built, &[now], starts).pop()?.segment;
+        now = stage.fit_starts(built, &[now], Effort::STARTS).pop()?.segment;
     }
     (is_near(stage, built, &now)).then_some(Segment { columns: None, ..now })
 }

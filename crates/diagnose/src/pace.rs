@@ -11,6 +11,10 @@ use rayon::prelude::*;
 
 /// Difference (rms over a window, units of noise) that a halved step may make.
 pub const TOLERANCE: f64 = 0.05;
+/// The same over a whole run.
+const WHOLE_TOLERANCE: f64 = 0.1;
+/// Halvings that whole runs may ask for.
+const HALVINGS: u32 = 3;
 /// Halvings of the scenario's own step that are tried beyond it.
 const FINER: u32 = 2;
 /// Free flight bears steps as many times longer as this.
@@ -50,6 +54,22 @@ pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) 
         free *= 0.5;
     }
     Discretisation { pace: Pace { step, free: free.max(step) }, worst }
+}
+
+/// Steps at which whole runs, which carry errors on for longer than windows do, are as exact: the present ones, halved as often as that
+/// takes; and what halving them once more would move, units of noise.
+pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment]) -> Discretisation {
+    let runs: Vec<&Segment> = runs.iter().collect();
+    let mut pace = stage.pace;
+    let mut worst = calc_worst(stage, built, &runs, pace);
+    for _ in 0..HALVINGS {
+        if worst <= WHOLE_TOLERANCE {
+            break;
+        }
+        pace = Pace { step: 0.5 * pace.step, free: 0.5 * pace.free };
+        worst = calc_worst(stage, built, &runs, pace);
+    }
+    Discretisation { pace, worst }
 }
 
 /// Largest difference from steps of half the length.

@@ -18,7 +18,7 @@ use crate::locate::{Located, locate, places};
 use crate::pace::{self, Discretisation};
 use crate::plant::Plant;
 use crate::replay::Pace;
-use crate::search::{Attempt, Limits, is_significant, search};
+use crate::search::{Attempt, Limits, search};
 use crate::standing::{Standing, follow};
 use crate::stretches::{self, Stretches, cut};
 use crate::tape::{Tape, load};
@@ -45,7 +45,7 @@ pub(crate) struct Findings {
 }
 
 /// Limits of the search.
-const LIMITS: Limits = Limits { effects: 3, refits: 4, sigmas: 4.0 };
+const LIMITS: Limits = Limits { effects: 3, refits: 4 };
 /// Error (units of noise) and share of the mismatch up to which what a corrected model leaves may be the errors of its own steps and starts.
 const RIGHT: f64 = 1.1;
 const NEXT_TO_NOTHING: f64 = 0.01;
@@ -183,7 +183,7 @@ const DULL: f64 = 0.15;
 
 /// What is left over the runs that were fitted, against what there was.
 fn verdict(judgement: &Judgement, found: &Fit, follows: bool) -> Verdict {
-    if !is_significant(found, &LIMITS) {
+    if !found.is_significant() {
         return if found.set.members.is_empty() { Verdict::NoMismatch } else { Verdict::Explained };
     }
     let [before, after] = judgement.rms(!follows, |run| found.segments.iter().any(|s| s.run == run));

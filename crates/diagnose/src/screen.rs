@@ -14,6 +14,7 @@ use crate::linear::{Segment, Stage, Variation, eliminate};
 use crate::plant::{Built, Plant};
 use crate::replay::Pace;
 use crate::start::{Freedom, freedoms};
+use crate::stretches::spokesmen;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -77,7 +78,7 @@ fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     let active = vary(plant, &fit.set, &slots, &sizes)?;
     let points: Vec<(usize, usize)> =
         all.iter().enumerate().flat_map(|(h, hyp)| (0..hyp.screens.len()).map(move |p| (h, p))).collect();
-    let pilots = pilots_of(stage, fit);
+    let pilots = Pilots::new(stage, fit);
     let probes_at = |(h, p): &(usize, usize)| probes_of(stage, plant, (fit, &pilots), (&all[*h], &all[*h].screens[*p]));
     let probes: Vec<Vec<Probe>> = points.par_iter().map(probes_at).collect();
     let products = sum_products(stage, fit, &active, &probes);
@@ -104,7 +105,7 @@ fn active_size(fit: &Fit, m: usize, k: usize) -> f64 {
 fn probes_of(
     stage: &Stage<'_>,
     plant: &Plant,
-    (fit, pilots): (&Fit, &[Segment]),
+    (fit, pilots): (&Fit, &Pilots<'_>),
     (hypothesis, point): (&Hypothesis, &ScreenPoint),
 ) -> Vec<Probe> {
     let build = |base: &[f64], direction: &[f64], step: f64| -> Option<Variation> {
@@ -118,7 +119,7 @@ fn probes_of(
         if c.secant {
             return Some(first);
         }
-        let size = pilot_size(stage, fit, pilots, &first.built);
+        let size = pilots.size(stage, &first.built);
         let step = if size > 0.0 && size.is_finite() { c.step * (WISH / size).clamp(1e-6, 1e4) } else { c.step };
         let near = (0.1..3.0).contains(&(step / c.step));
         let variation = if near { first } else { build(&c.base, &c.direction, step)? };
@@ -143,35 +144,33 @@ fn probes_of(
     probes
 }
 
-/// Segments that tune steps: those in which most is amiss, then an even selection.
-fn pilots_of(stage: &Stage<'_>, fit: &Fit) -> Vec<Segment> {
-    let amiss = |s: &Segment| (stage.residuals(&fit.built, s).norm_squared() / s.weight, stage.count(s));
-    let mut order: Vec<(usize, f64)> = fit
-        .segments
-        .par_iter()
-        .map(amiss)
-        .map(|(cost, count)| cost - count as f64)
-        .collect::<Vec<_>>()
-        .into_iter()
-        .enumerate()
-        .collect();
-    order.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let even = (PILOTS / 2..fit.segments.len()).step_by(PILOTS);
-    let mut chosen: Vec<usize> = order.iter().take(WORST).map(|o| o.0).chain(even).collect();
-    let mut seen = std::collections::BTreeSet::new();
-    chosen.retain(|i| seen.insert(*i));
-    chosen.into_iter().map(|i| fit.segments[i].clone()).collect()
+/// Segments that tune steps, those in which most is amiss and an even selection, with the residuals of the fit.
+struct Pilots<'a> {
+    all: &'a [Segment],
+    residuals: Vec<DVector<f64>>,
+    chosen: Vec<usize>,
 }
 
-/// Root mean square of what a changed model does to some segments; to any, where none of these shows it.
-fn pilot_size(stage: &Stage<'_>, fit: &Fit, pilots: &[Segment], built: &Built) -> f64 {
-    let moved = |segment: &Segment| {
-        let moved = Segment { start: segment.start.fitted_to(built), ..segment.clone() };
-        let difference = stage.residuals(built, &moved) - stage.residuals(&fit.built, segment);
-        (difference.norm_squared() / difference.len().max(1) as f64).sqrt()
-    };
-    let size = pilots.iter().map(moved).fold(0.0, f64::max);
-    if size > 0.0 { size } else { fit.segments.iter().map(moved).find(|size| *size > 0.0).unwrap_or(0.0) }
+impl<'a> Pilots<'a> {
+    fn new(stage: &Stage<'_>, fit: &'a Fit) -> Self {
+        let all = &fit.segments;
+        let residuals: Vec<DVector<f64>> = all.par_iter().map(|s| stage.residuals(&fit.built, s)).collect();
+        let excess = |(s, r): (&Segment, &DVector<f64>)| r.norm_squared() / s.weight - r.len() as f64;
+        let excesses: Vec<f64> = all.iter().zip(&residuals).map(excess).collect();
+        Self { all, residuals, chosen: spokesmen(&excesses, (WORST, all.len().div_ceil(PILOTS))) }
+    }
+
+    /// Root mean square of what a changed model does to the pilots; to any segment, where none of these shows it.
+    fn size(&self, stage: &Stage<'_>, built: &Built) -> f64 {
+        let moved = |i: usize| {
+            let segment = &self.all[i];
+            let moved = Segment { start: segment.start.fitted_to(built), ..segment.clone() };
+            let difference = stage.residuals(built, &moved) - &self.residuals[i];
+            (difference.norm_squared() / difference.len().max(1) as f64).sqrt()
+        };
+        let size = self.chosen.iter().map(|i| moved(*i)).fold(0.0, f64::max);
+        if size > 0.0 { size } else { (0..self.all.len()).map(moved).find(|size| *size > 0.0).unwrap_or(0.0) }
+    }
 }
 
 /// Reduced products of (active, columns, r) of every point, summed over the segments.

@@ -51,8 +51,6 @@ pub struct Limits {
     pub effects: usize,
     /// Hypotheses refitted in each round.
     pub refits: usize,
-    /// Excess in standard deviations below which nothing is left to explain.
-    pub sigmas: f64,
 }
 
 /// Refits of a first look, and of a kept set.
@@ -65,14 +63,6 @@ const NECESSARY: f64 = 1.3;
 const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, reuse: true };
 /// Promise relative to the best below which a hypothesis is not refitted.
 const PROMISING: f64 = 0.15;
-
-/// Excess per scalar that data sheets' noise figures do not vouch for.
-const LEAST: f64 = 0.03;
-
-/// Whether the cost is more than noise leaves.
-pub fn is_significant(fit: &Fit, limits: &Limits) -> bool {
-    fit.excess() > (limits.sigmas * fit.spread()).max(LEAST * fit.noise)
-}
 
 /// What could act beside a fitted set.
 pub type Candidates<'a> = dyn Fn(&Stage<'_>, &Fit) -> Result<Vec<Hypothesis>, DiagnoseError> + 'a;
@@ -108,7 +98,10 @@ pub fn search(
 ) -> Result<(Standing, Vec<Attempt>), DiagnoseError> {
     let (mut attempts, mut known) = (Vec::new(), Vec::new());
     let mut round = 0;
-    while is_significant(now.judge(), limits) && now.judge().set.members.len() < limits.effects {
+    if refine(stage, &now) {
+        now = now.refit(stage, plant, now.judge().set.clone(), WHOLE)?;
+    }
+    while now.judge().is_significant() && now.judge().set.members.len() < limits.effects {
         let is_active = |h: &Hypothesis| now.judge().set.members.iter().any(|(m, _)| m.title() == h.title());
         let all = hypotheses(stage, &now.windows)?;
         known.extend(all.iter().cloned());
@@ -126,10 +119,13 @@ pub fn search(
         let of_round = attempts.iter_mut().filter(|t| t.round == round);
         of_round.for_each(|t| t.kept = format!("{} at {}", t.name, t.place) == added);
         let set = best.judge().set.clone();
-        refine(stage, &best);
-        // What is far from the data yet is not worth fitting to the end.
+        let is_finer = refine(stage, &best);
+        // What is far from the data yet is not worth fitting to the end, nor what explains them: all samples fit that.
         let effort = if best.judge().rms() > lost::NEAR { LOOK } else { WHOLE };
-        now = best.refit_here(stage, plant, set, effort)?;
+        now = match is_finer || best.judge().is_significant() {
+            true => best.refit_here(stage, plant, set, effort)?,
+            false => best,
+        };
         let found = now.judge().set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
         stage.work.watch.step(&format!("kept {added}: {}, {found}", errors(&now)));
         now = now.weighted(stage);
@@ -139,16 +135,25 @@ pub fn search(
     Ok((prune(stage, plant, now)?, attempts))
 }
 
-/// Takes finer steps where the found model needs them.
-fn refine(stage: &mut Stage<'_>, standing: &Standing) {
-    let found = pace::choose(stage, &standing.judge().built, &standing.windows.segments, stage.pace.step);
-    if found.pace.step < stage.pace.step || found.pace.free < stage.pace.free {
-        stage.pace = Pace {
-            step: found.pace.step.min(stage.pace.step),
-            free: found.pace.free.min(stage.pace.free).max(found.pace.step),
-        };
-        stage.work.watch.step(&format!("steps of {:.3e} s, {:.3e} s in free flight", stage.pace.step, stage.pace.free));
+/// Takes finer steps where the found model needs them, over whole runs too where these are near; whether it does.
+fn refine(stage: &mut Stage<'_>, standing: &Standing) -> bool {
+    let before = stage.pace;
+    let built = &standing.judge().built;
+    let found = pace::choose(stage, built, &standing.windows.segments, before.step).pace;
+    let step = found.step.min(before.step);
+    stage.pace = Pace { step, free: found.free.min(before.free).max(step) };
+    let mut worst = None;
+    if standing.whole.rms() < lost::NEAR {
+        let found = pace::refine(stage, built, &standing.whole.segments);
+        (stage.pace, worst) = (found.pace, Some(found.worst));
     }
+    let is_finer = stage.pace != before;
+    if is_finer {
+        let moves = worst.map_or(String::new(), |w| format!(": halving moves whole runs by {w:.2e}"));
+        let Pace { step, free } = stage.pace;
+        stage.work.watch.step(&format!("steps of {step:.3e} s, {free:.3e} s in free flight{moves}"));
+    }
+    is_finer
 }
 
 fn errors(now: &Standing) -> String {
@@ -171,7 +176,7 @@ fn refit_best(
         }
         let here = if is_window { &now.windows } else { &now.whole };
         // What is found in windows and explains whole runs needs no screen over these.
-        let is_done = best.as_ref().is_some_and(|b| is_enough(now, b, limits));
+        let is_done = best.as_ref().is_some_and(|b| is_enough(now, b));
         let is_far = here.rms() > LINEAR.min(now.reach);
         if !is_window && (is_done || is_far) {
             break;
@@ -194,7 +199,7 @@ fn refit_best(
         all.retain(|h| order.iter().any(|(name, place)| h.name == name && h.place == *place));
         let most = ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max);
         for (at, tried) in ready {
-            let is_done = best.as_ref().is_some_and(|b| !is_significant(b.judge(), limits));
+            let is_done = best.as_ref().is_some_and(|b| !b.judge().is_significant());
             if is_done || here.cost - tried.cost < NEARLY * most {
                 continue;
             }
@@ -217,8 +222,8 @@ fn refit_best(
 }
 
 /// Whether a standing leaves so little of what there was that other hypotheses need not be looked for in this round.
-fn is_enough(now: &Standing, best: &Standing, limits: &Limits) -> bool {
-    !is_significant(best.judge(), limits)
+fn is_enough(now: &Standing, best: &Standing) -> bool {
+    !best.judge().is_significant()
         || best.rungs.len() < now.rungs.len()
         || best.is_comparable(now) && best.judge().excess() < UNEXPLAINED * now.judge().excess()
 }
@@ -321,7 +326,7 @@ fn possible(stage: &Stage<'_>, plant: &Plant, now: &Fit, h: &Hypothesis, promise
         let cost = if count_memory(&built) > count_memory(&now.built) {
             // What remembers is moving already: its own starts are fitted before it is judged.
             let few: Vec<Segment> = now.segments.iter().step_by(FEW).cloned().collect();
-            stage.fit_starts(&built, &few, (2, 1e-2)).iter().map(|s| s.cost).sum()
+            stage.fit_starts(&built, &few, BRIEF).iter().map(|s| s.cost).sum()
         } else {
             stage.settle(&built, &now.segments).1
         };
@@ -333,8 +338,9 @@ fn possible(stage: &Stage<'_>, plant: &Plant, now: &Fit, h: &Hypothesis, promise
     best.map(|b| b.1)
 }
 
-/// One in so many segments tells how near what remembers may begin.
+/// One in so many segments tells how near what remembers may begin, and how far its starts are fitted for that.
 const FEW: usize = 3;
+const BRIEF: Effort = Effort { iterations: 2, share: 1e-2, reuse: false };
 /// Halvings of a promise.
 const SHARES: i32 = 5;
 

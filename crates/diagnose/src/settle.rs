@@ -63,22 +63,16 @@ impl Stage<'_> {
         }
     }
 
-    /// Fits every start, `iterations` linearisations at most, until one promises less than `share` of the segment's excess.
-    pub fn fit_starts(&self, built: &Built, segments: &[Segment], (iterations, share): (usize, f64)) -> Vec<Settled> {
+    /// Fits every start, so many linearisations at most, until one promises less than a share of the segment's excess.
+    pub fn fit_starts(&self, built: &Built, segments: &[Segment], effort: Effort) -> Vec<Settled> {
         // The first segment finds the steps of the difference quotients for all.
         let Some((first, others)) = segments.split_first() else { return Vec::new() };
-        let (first, sizes) = self.fit_start(built, first, &[], (iterations, share));
-        let of = |s: &Segment| self.fit_start(built, s, &sizes, (iterations, share)).0;
+        let (first, sizes) = self.fit_start(built, first, &[], effort);
+        let of = |s: &Segment| self.fit_start(built, s, &sizes, effort).0;
         std::iter::once(first).chain(others.par_iter().map(of).collect::<Vec<_>>()).collect()
     }
 
-    fn fit_start(
-        &self,
-        built: &Built,
-        segment: &Segment,
-        sizes: &[f64],
-        (iterations, share): (usize, f64),
-    ) -> (Settled, Vec<f64>) {
+    fn fit_start(&self, built: &Built, segment: &Segment, sizes: &[f64], effort: Effort) -> (Settled, Vec<f64>) {
         let (segment, mut r) = self.nearer(built, segment);
         let all = freedoms(built, &segment.start);
         let mut sizes: Vec<f64> =
@@ -86,17 +80,17 @@ impl Stage<'_> {
         // What is as near as noise lets it be needs no derivatives.
         let noise = r.len() as f64 + (2.0 * r.len() as f64).sqrt();
         let cost = finite(r.norm_squared());
-        let converged = share >= Effort::JUDGED.share && cost < noise;
+        let converged = effort.share >= Effort::JUDGED.share && cost < noise;
         let mut now = Settled { segment, cost, shown: 0, iterations: 0, converged };
         let mut damping = 0.0;
-        while now.iterations < iterations && !now.converged {
+        while now.iterations < effort.iterations && !now.converged {
             let (columns, used): (Vec<DVector<f64>>, Vec<f64>) =
                 self.quotients(built, &now.segment, &r, (&all, &sizes)).into_iter().unzip();
             sizes = used;
             now.iterations += 1;
             now.shown = columns.iter().filter(|c| c.norm_squared() > 0.0).count();
             now.segment.columns = Some(Arc::new(StartColumns { freedoms: all.clone(), columns }));
-            if !self.descend(built, &mut now, &mut r, (&mut damping, share)) {
+            if !self.descend(built, &mut now, &mut r, (&mut damping, effort.share)) {
                 break;
             }
         }
@@ -136,13 +130,13 @@ impl Stage<'_> {
     }
 
     /// Segments whose starts are begun anew from what their samples say, where that leads to a lower valley than they stand in.
-    pub fn begun_anew(&self, built: &Built, segments: &[Segment], (iterations, share): (usize, f64)) -> Vec<Segment> {
+    pub fn begun_anew(&self, built: &Built, segments: &[Segment], effort: Effort) -> Vec<Segment> {
         let of = |segment: &Segment| {
             let now = finite(self.residuals(built, segment).norm_squared());
             if now < POOR * segment.weight * self.count(segment) as f64 {
                 return segment.clone();
             }
-            let other = self.fit_growing(built, segment, (iterations, share));
+            let other = self.fit_growing(built, segment, effort);
             if other.cost < now { other.segment } else { segment.clone() }
         };
         segments.par_iter().map(of).collect()
@@ -150,7 +144,7 @@ impl Stage<'_> {
 
     /// A start fitted to the first part of a segment, from what its samples say, then to longer and longer ones: what comes early is followed
     /// before what comes of it is looked at.
-    fn fit_growing(&self, built: &Built, segment: &Segment, effort: (usize, f64)) -> Settled {
+    fn fit_growing(&self, built: &Built, segment: &Segment, effort: Effort) -> Settled {
         let Span { from, to } = segment.span;
         let mut now = Segment { start: segment.guess.fitted_to(built), columns: None, ..segment.clone() };
         let freedoms = freedoms(built, &now.start).len();

@@ -80,7 +80,7 @@ impl Standing {
             return Ok(Self { windows, whole, ..self.clone() }.weighted(stage));
         }
         let windows = fit_in_turns(stage, plant, set, self.windows.segments.clone(), effort)?;
-        self.climbed(stage, plant, windows, effort)
+        self.climb(stage, plant, windows, effort)
     }
 
     /// The same, but no higher than it stands.
@@ -95,7 +95,7 @@ impl Standing {
             return self.refit(stage, plant, set, effort);
         }
         let windows = fit_in_turns(stage, plant, set, self.windows.segments.clone(), effort)?;
-        let whole = Fit { set: windows.set.clone(), built: windows.built.clone(), ..self.whole.clone() };
+        let whole = self.left_far(&windows, self.whole.segments.clone());
         Ok(Self { windows, whole, ..self.clone() })
     }
 
@@ -107,11 +107,15 @@ impl Standing {
         mut windows: Fit,
         effort: Effort,
     ) -> Result<Self, DiagnoseError> {
-        let mut rungs = self.rungs.clone();
         // What short windows can tell they tell before longer ones, in which there are more wrong valleys, are asked.
-        if !rungs.is_empty() {
+        if !self.rungs.is_empty() {
             windows = fit_in_turns(stage, plant, windows.set, windows.segments, effort)?;
         }
+        self.climb(stage, plant, windows, effort)
+    }
+
+    fn climb(&self, stage: &Stage<'_>, plant: &Plant, mut windows: Fit, effort: Effort) -> Result<Self, DiagnoseError> {
+        let mut rungs = self.rungs.clone();
         while let Some(rung) = rungs.first() {
             let settled = fit(stage, plant, windows.set.frozen(), rung.clone(), Effort::STARTS)?;
             let settled = Fit { set: windows.set.clone(), ..settled };
@@ -129,12 +133,21 @@ impl Standing {
         // Where windows had to be shortened, whole runs are far off until the longest windows follow well.
         let is_far = self.reach <= STEEP && (!rungs.is_empty() || lost::calc_share(stage, &windows) > FEW);
         let whole = match is_far {
-            true => Fit { segments, set: set.clone(), built: windows.built.clone(), ..self.whole.clone() },
+            true => self.left_far(&windows, segments),
             false => Fit { set: set.clone(), ..self.followed(stage, plant, set.frozen(), &segments)? },
         };
         let standing = Self { windows, whole, rungs, reach: self.reach };
         // They begin to follow: from now on they judge.
-        if standing.follows() { standing.refit(stage, plant, set, effort) } else { Ok(standing) }
+        if standing.follows() && standing.whole.is_significant() {
+            standing.refit(stage, plant, set, effort)
+        } else {
+            Ok(standing)
+        }
+    }
+
+    /// Whole runs as far off as they were, of a set that was fitted in windows only.
+    fn left_far(&self, windows: &Fit, segments: Vec<Segment>) -> Fit {
+        Fit { segments, set: windows.set.clone(), built: windows.built.clone(), ..self.whole.clone() }
     }
 
     /// Whole runs of a set that most windows follow; where these had to be shortened, runs that stand in wrong valleys are begun anew.
@@ -149,8 +162,7 @@ impl Standing {
         if self.reach > STEEP || whole.rms() < NEAR {
             return Ok(whole);
         }
-        let segments =
-            stage.begun_anew(&whole.built, &whole.segments, (Effort::STARTS.iterations, Effort::STARTS.share));
+        let segments = stage.begun_anew(&whole.built, &whole.segments, Effort::STARTS);
         let whole = fit(stage, plant, whole.set, segments, Effort { iterations: 1, ..Effort::STARTS })?;
         Ok(lost::cut_off(stage, whole))
     }
@@ -219,7 +231,7 @@ fn fit_in_turns(
 ) -> Result<Fit, DiagnoseError> {
     let mut now = fit(stage, plant, set, segments, effort)?;
     for _ in 0..TURNS {
-        let segments = stage.begun_anew(&now.built, &now.segments, (Effort::STARTS.iterations, Effort::STARTS.share));
+        let segments = stage.begun_anew(&now.built, &now.segments, Effort::STARTS);
         let is_lower = stage.cost(&now.built, &segments) < LOWER * now.cost;
         if !is_lower {
             break;
@@ -244,8 +256,7 @@ fn weigh(stage: &Stage<'_>, built: &Built, segments: &mut [Segment]) {
 /// A fit of segments of which some may stand in wrong valleys: weighed, and these begun anew, as long as that helps.
 fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) -> Result<Fit, DiagnoseError> {
     let anew = |now: &Fit| {
-        let starts = (Effort::STARTS.iterations, Effort::STARTS.share);
-        let mut segments = stage.begun_anew(&now.built, &now.segments, starts);
+        let mut segments = stage.begun_anew(&now.built, &now.segments, Effort::STARTS);
         segments.iter_mut().for_each(|s| (s.columns, s.weight) = (None, 1.0));
         let cost = stage.cost(&now.built, &segments);
         (segments, cost)

@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Root mean square in windows beyond which shorter ones are looked at.
 pub(crate) const STEEP: f64 = 8.0;
 /// Standard deviations of a segment's cost beyond which it is missed.
-pub(crate) const MISSED: f64 = 6.0;
+const MISSED: f64 = 6.0;
 /// A shorter window's share of the last.
 const SHORTER: f64 = 0.25;
 /// Samples of the sparsest reading that a window has at least.
@@ -99,12 +99,17 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
 /// Root mean square over the segments that are missed: a few among many that are followed count like many.
 fn calc_miss(stage: &Stage<'_>, fit: &Fit) -> f64 {
     let of = |s: &Segment| {
-        let (cost, n) = (stage.residuals(&fit.built, s).norm_squared(), stage.count(s) as f64);
-        if cost > n + MISSED * (2.0 * n).sqrt() { (cost, n) } else { (0.0, 0.0) }
+        let (cost, n) = (stage.residuals(&fit.built, s).norm_squared(), stage.count(s));
+        if is_missed(cost, n) { (cost, n as f64) } else { (0.0, 0.0) }
     };
     let all: Vec<(f64, f64)> = fit.segments.par_iter().map(of).collect();
     let (cost, n) = all.iter().fold((0.0, 0.0), |sum, s| (sum.0 + s.0, sum.1 + s.1));
     (cost / f64::max(n, 1.0)).sqrt()
+}
+
+/// Whether a stretch of `n` scalars costs more than noise leaves.
+pub(crate) fn is_missed(cost: f64, n: usize) -> bool {
+    cost > n as f64 + MISSED * (2.0 * n as f64).sqrt()
 }
 
 /// The shortest window that the sparsest reading fills.
@@ -127,13 +132,20 @@ fn representative(stage: &Stage<'_>, fit: &Fit, many: f64) -> Fit {
         r.norm_squared() - r.len() as f64
     };
     let excesses: Vec<f64> = fit.segments.par_iter().map(excess).collect();
-    let mut order: Vec<usize> = (0..fit.segments.len()).collect();
-    order.sort_by(|a, b| excesses[*b].total_cmp(&excesses[*a]));
-    let mut chosen: Vec<usize> = order.into_iter().take(most).collect();
-    chosen.extend((0..most).map(|k| (2 * k + 1) * fit.segments.len() / (2 * most)));
-    chosen.sort_unstable();
-    chosen.dedup();
+    let chosen = spokesmen(&excesses, (most, most));
     of_segments(stage, fit, chosen.iter().map(|i| fit.segments[*i].clone()).collect())
+}
+
+/// Indices of the worst of some segments, and of an even selection of all, in order.
+pub(crate) fn spokesmen(excesses: &[f64], (worst, even): (usize, usize)) -> Vec<usize> {
+    let count = excesses.len();
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|a, b| excesses[*b].total_cmp(&excesses[*a]));
+    order.truncate(worst);
+    order.extend((0..even.min(count)).map(|k| (2 * k + 1) * count / (2 * even.min(count))));
+    order.sort_unstable();
+    order.dedup();
+    order
 }
 
 /// A fit of some of its segments.

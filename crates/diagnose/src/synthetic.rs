@@ -53,7 +53,7 @@ pub fn synthesise(
             values[event.reading as usize][event.sample as usize] = *value;
         })?;
         for (i, (reading, values)) in tape.readings.iter().zip(&mut values).enumerate() {
-            let sigma = like.sigma(&reading.component(0)).or_else(|| like.sigma(&reading.channel)).unwrap_or(0.0);
+            let sigma = like.sigma(&reading.component(0)).unwrap_or(0.0);
             let mut random = ChaCha8Rng::seed_from_u64(seed);
             random.set_stream(((tape.index as u64) << 32) | i as u64);
             values.iter_mut().for_each(|v| *v = v.disturbed(&white(&mut random, sigma)));
