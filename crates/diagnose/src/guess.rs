@@ -39,11 +39,33 @@ pub fn guess(built: &Built, tape: &Tape, time: f64) -> Start {
         }
     }
     if time > tape.span.0 {
+        start.still = (0..start.bases.len()).map(|v| calc_still(v, tape, time)).collect();
         let measured: Vec<Option<Twist>> =
             (0..built.model.vehicles.len()).map(|v| acceleration(v, tape, time)).collect();
         start.free_bristles(built, tape.index, &measured);
     }
     start
+}
+
+/// Speed below which a base is still, m/s, and the time over which it is told, s.
+const STILL: f64 = 1e-3;
+const LAG: f64 = 0.03;
+
+/// How long a base has been still at an instant, as far as its measured place tells, s.
+fn calc_still(v: usize, tape: &Tape, time: f64) -> f64 {
+    let place = tape.readings.iter().find(|r| r.quantity == Quantity::Position(v, 0));
+    let Some(place) = place else { return 0.0 };
+    let value = |i: usize| match place.values[i] {
+        Value::Vector(x) => x,
+        Value::Rotation(_) => Vec3::zeros(),
+    };
+    let end = place.times.partition_point(|t| *t <= time);
+    let moved = (0..end).rev().find(|i| {
+        let t = place.times[*i];
+        let before = place.times[..*i].partition_point(|s| *s <= t - LAG);
+        before > 0 && (value(*i) - value(before - 1)).norm() > STILL * (t - place.times[before - 1])
+    });
+    time - moved.map_or(tape.span.0, |i| place.times[i])
 }
 
 fn guess_base(start: &mut Start, v: usize, tape: &Tape, time: f64, of_base: impl Fn(usize, usize) -> bool) {

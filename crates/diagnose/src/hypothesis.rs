@@ -162,6 +162,7 @@ impl Hypothesis {
             "slosh"
                 | "flexible-appendage"
                 | "friction-stribeck"
+                | "friction-dwell-time"
                 | "joint-stribeck-friction"
                 | "joint-elasticity"
                 | "joint-backlash"

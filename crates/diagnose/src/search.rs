@@ -98,7 +98,7 @@ pub fn search(
 ) -> Result<(Standing, Vec<Attempt>), DiagnoseError> {
     let (mut attempts, mut known) = (Vec::new(), Vec::new());
     let mut round = 0;
-    if refine(stage, &now) {
+    if now.whole.rms() < lost::NEAR && refine(stage, &now) {
         now = now.refit(stage, plant, now.judge().set.clone(), WHOLE)?;
     }
     while now.judge().is_significant() && now.judge().set.members.len() < limits.effects {
@@ -176,12 +176,12 @@ fn refit_best(
         }
         let here = if is_window { &now.windows } else { &now.whole };
         // What is found in windows and explains whole runs needs no screen over these.
-        let is_done = best.as_ref().is_some_and(|b| is_enough(now, b));
+        let enough = best.as_ref().is_some_and(|b| is_enough(now, b));
         let is_far = here.rms() > LINEAR.min(now.reach);
-        if !is_window && (is_done || is_far) {
+        if !is_window && (enough || is_far) {
             break;
         }
-        let mut scores = screen_aloud(stage, plant, here, &all)?;
+        let (mut scores, cheap) = (screen_aloud(stage, plant, here, &all)?, all.len());
         // What is dear to screen is screened only where the rest leaves something.
         let promised = scores.first().map_or(0.0, |s| s.score);
         if is_window && promised < SUFFICIENT * here.excess() && !dear.is_empty() {
@@ -192,15 +192,24 @@ fn refit_best(
         }
         // In windows that had to be shortened a promise says little of what a refit brings.
         let least = if now.reach > STEEP { UNPROMISING * here.excess() } else { 0.0 };
-        let ready = refit_promising(stage, plant, here, (&all, &scores, least), (limits, round), &mut attempts)?;
+        let mut ready = refit_promising(stage, plant, here, (&all, &scores, least), (limits, round), &mut attempts)?;
+        // Nor is it left out where what promised enough does not bring it.
+        let is_open = scores.iter().all(|s| s.hypothesis < cheap);
+        let left = here.excess() - brought_by(here, &ready);
+        if is_window && is_open && !dear.is_empty() && left > UNEXPLAINED * here.excess() {
+            let scores = screen_aloud(stage, plant, here, dear)?;
+            let further = refit_promising(stage, plant, here, (dear, &scores, least), (limits, round), &mut attempts)?;
+            ready.extend(further);
+            ready.sort_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)));
+            all.extend(dear.iter().cloned());
+        }
         // Over whole runs only what the windows did not rule out is screened.
         let order: Vec<(String, String)> =
             attempts.iter().take(SCREENED).map(|a| (a.name.clone(), a.place.clone())).collect();
         all.retain(|h| order.iter().any(|(name, place)| h.name == name && h.place == *place));
-        let most = ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max);
+        let most = brought_by(here, &ready);
         for (at, tried) in ready {
-            let is_done = best.as_ref().is_some_and(|b| !b.judge().is_significant());
-            if is_done || here.cost - tried.cost < NEARLY * most {
+            if best.as_ref().is_some_and(|b| is_done(now, b)) || here.cost - tried.cost < NEARLY * most {
                 continue;
             }
             let standing = if is_window {
@@ -221,9 +230,20 @@ fn refit_best(
     Ok((best, attempts))
 }
 
+/// The largest fall of the cost by a refit.
+fn brought_by(here: &Fit, ready: &[(usize, Fit)]) -> f64 {
+    ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max)
+}
+
+/// Whether a standing leaves nothing, in the longest windows at least where these had to be shortened.
+fn is_done(now: &Standing, best: &Standing) -> bool {
+    let has_climbed = best.rungs.is_empty() && !now.rungs.is_empty();
+    !best.judge().is_significant() || has_climbed && !best.windows.is_significant()
+}
+
 /// Whether a standing leaves so little of what there was that other hypotheses need not be looked for in this round.
 fn is_enough(now: &Standing, best: &Standing) -> bool {
-    !best.judge().is_significant()
+    is_done(now, best)
         || best.rungs.len() < now.rungs.len()
         || best.is_comparable(now) && best.judge().excess() < UNEXPLAINED * now.judge().excess()
 }
@@ -252,6 +272,7 @@ fn refit_promising(
         let (label, share) = (&h.screens[score.point].label, 100.0 * score.score / here.cost);
         stage.work.watch.step(&format!("  {} {label} promises {share:.1} % of the cost", h.title()));
     }
+    let most = interesting.first().map_or(0.0, |s| s.score);
     let mut ready: Vec<(usize, Fit)> = Vec::new();
     for score in interesting {
         let h = &all[score.hypothesis];
@@ -260,9 +281,11 @@ fn refit_promising(
         if known.is_none() {
             attempts.push(Attempt::new(round, h, score, here));
         }
-        // A promise is seldom exceeded: what promises less than another has brought already is left alone.
-        let brought = ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max);
-        let is_hopeless = score.score < RIVAL * brought && !h.has_valleys();
+        // A promise is seldom exceeded: what promises less than another has brought already is left alone; where that one leaves something
+        // too, promises are compared.
+        let is_open = ready.iter().all(|r| r.1.is_significant());
+        let rival = brought_by(here, &ready).min(if is_open { most } else { f64::INFINITY });
+        let is_hopeless = score.score < RIVAL * rival && !h.has_valleys();
         if !picked.iter().any(|p| std::ptr::eq(*p, score)) || is_hopeless {
             continue;
         }

@@ -32,6 +32,8 @@ pub struct Start {
     pub memory: Vec<f64>,
     /// Deflections of the bristles that touch at the start, W axes, m; empty where all begin unloaded.
     pub bristles: Vec<Vec3>,
+    /// How long each base has been still, s: what sticks grows stronger with that.
+    pub still: Vec<f64>,
 }
 
 /// One free coordinate of a start.
@@ -86,6 +88,7 @@ impl Start {
             v: state.v.clone(),
             memory: vec![0.0; count_memory(built)],
             bristles: Vec::new(),
+            still: vec![0.0; state.bases.len()],
         }
     }
 
@@ -100,6 +103,7 @@ impl Start {
             v: state.v.clone(),
             memory: vec![0.0; count_memory(built)],
             bristles: Vec::new(),
+            still: vec![0.0; state.bases.len()],
         };
         let mut fresh = start.world(built, run);
         fresh.commands_mut().copy_from_slice(&state.commands);
@@ -110,8 +114,15 @@ impl Start {
             let own = state.bristles.iter().find(|m| (m.pair as usize, m.feature) == (touch.pair, touch.feature));
             let s = own.map_or(Vec3::zeros(), |m| m.s_w);
             found.borrow_mut().push(s);
-            s
+            (s, 0.0)
         });
+        for memory in &state.bristles {
+            let model = &built.model;
+            if let Some(Friction::Bristle(law)) = model.laws[memory.pair as usize].friction {
+                let stuck = law.levels().calc_time_at_rest(memory.rest);
+                vehicles_of(built, memory.pair as usize).for_each(|v| start.still[v] = stuck);
+            }
+        }
         start.bristles = found.into_inner();
         start
     }
@@ -139,7 +150,8 @@ impl Start {
         let mut world = World::new(Arc::clone(built.model_of(run)), state);
         world.set_base_twists(&self.twists);
         if !self.bristles.is_empty() {
-            world.seed_bristles(|i, _| self.bristles.get(i).copied().unwrap_or_default());
+            let s = |i: usize| self.bristles.get(i).copied().unwrap_or_default();
+            world.seed_bristles(|i, touch| (s(i), self.calc_stuck(built, touch.pair)));
         }
         world
     }
@@ -156,7 +168,7 @@ impl Start {
                 _ => 0.0,
             };
             reach.borrow_mut().push((touch.pair, reaches, touch.normal_w));
-            Vec3::zeros()
+            Default::default()
         });
         let points = reach.into_inner();
         let mut pairs: Vec<usize> = points.iter().map(|p| p.0).collect();
@@ -169,6 +181,12 @@ impl Start {
             let s = if s.norm() > largest { s * (largest / s.norm()) } else { s };
             of_pair.iter().for_each(|i| self.bristles[*i] = s);
         }
+    }
+
+    /// How long a pair has stuck as far as it is known, s: since the later of its bodies moved.
+    fn calc_stuck(&self, built: &Built, pair: usize) -> f64 {
+        let still = vehicles_of(built, pair).map(|v| self.still[v]).fold(f64::INFINITY, f64::min);
+        if still.is_finite() { still } else { 0.0 }
     }
 
     /// Common deflection of some points that comes nearest to the measured accelerations.
@@ -250,6 +268,14 @@ impl Start {
             Freedom::Bristle(i, axis) => self.bristles[i] += along(axis),
         }
     }
+}
+
+/// The vehicles whose bases may move of the two bodies of a pair.
+fn vehicles_of(built: &Built, pair: usize) -> impl Iterator<Item = usize> {
+    let model = &built.model;
+    let (a, b) = model.pair_bodies(pair);
+    let free = |body: usize| model.owners.get(body).map(|o| o.0).filter(|v| !model.vehicles[*v].base.is_held());
+    [a, b].map(free).into_iter().flatten()
 }
 
 /// Slots of memory that a start has in a model.

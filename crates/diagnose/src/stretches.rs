@@ -127,13 +127,14 @@ fn representative(stage: &Stage<'_>, fit: &Fit, many: f64) -> Fit {
     if fit.segments.len() <= 2 * most {
         return fit.clone();
     }
-    let excess = |s: &Segment| {
-        let r = stage.residuals(&fit.built, s);
-        r.norm_squared() - r.len() as f64
-    };
-    let excesses: Vec<f64> = fit.segments.par_iter().map(excess).collect();
+    let excesses: Vec<f64> = fit.segments.par_iter().map(|s| calc_excess(stage, &fit.built, s)).collect();
     let chosen = spokesmen(&excesses, (most, most));
     of_segments(stage, fit, chosen.iter().map(|i| fit.segments[*i].clone()).collect())
+}
+
+fn calc_excess(stage: &Stage<'_>, built: &Built, segment: &Segment) -> f64 {
+    let r = stage.residuals(built, segment);
+    r.norm_squared() - r.len() as f64
 }
 
 /// Indices of the worst of some segments, and of an even selection of all, in order.
@@ -156,12 +157,16 @@ fn of_segments(stage: &Stage<'_>, fit: &Fit, segments: Vec<Segment>) -> Fit {
 }
 
 /// Flights between touches where there are some, else thirds of the runs, also where an event later in the run hides what is slow.
-fn long(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, mut segments: Vec<Segment>) -> Result<Fit, DiagnoseError> {
-    if segments.is_empty() {
+fn long(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, flights: Vec<Segment>) -> Result<Fit, DiagnoseError> {
+    if flights.is_empty() {
         let third = stage.tapes.iter().map(|t| (t.span.1 - t.span.0) / 3.0).fold(0.0, f64::max);
-        segments = cut(&nominal.built, stage.tapes, Some(third), |t| t.role == Role::Fit);
+        let thirds = cut(&nominal.built, stage.tapes, Some(third), |t| t.role == Role::Fit);
+        let thirds = fit(stage, plant, EffectSet::default(), thirds, Effort::STARTS)?;
+        let excesses: Vec<f64> = thirds.segments.par_iter().map(|s| calc_excess(stage, &thirds.built, s)).collect();
+        let chosen = spokesmen(&excesses, THIRDS).into_iter().map(|i| thirds.segments[i].clone()).collect();
+        return Ok(of_segments(stage, &thirds, chosen));
     }
-    fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)
+    fit(stage, plant, EffectSet::default(), flights, Effort::STARTS)
 }
 
 /// The stretches of at least a window in which nothing touches, as the windows' replays tell; empty where nothing ever or always touches.
@@ -191,6 +196,8 @@ fn flights(stage: &Stage<'_>, windows: &Fit) -> Vec<Segment> {
     spans.into_iter().map(|(run, span)| guessed(&windows.built, stage.tapes, run, span)).collect()
 }
 
+/// Thirds of runs that speak for all: the worst, and an even selection.
+const THIRDS: (usize, usize) = (2, 3);
 /// Share of a window that a flight keeps away from touches.
 const AHEAD: f64 = 0.02;
 

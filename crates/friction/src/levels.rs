@@ -86,6 +86,19 @@ impl Levels {
         }
     }
 
+    /// Rest of a contact that has stuck for `elapsed` s since it began.
+    pub fn calc_rested(&self, elapsed: f64) -> f64 {
+        match self.stribeck_speed == 0.0 {
+            true => self.settle(self.initial_rest(), true, elapsed),
+            false => self.calc_rest(self.initial_rest(), 0.0, elapsed),
+        }
+    }
+
+    /// Time for which a contact has stuck that has this rest, s.
+    pub fn calc_time_at_rest(&self, rest: f64) -> f64 {
+        -self.dwell_time * (-rest.clamp(0.0, 1.0 - f64::EPSILON)).ln_1p()
+    }
+
     /// dμ/du at a slip speed, s/m; zero where the level does not follow the speed at once.
     #[inline]
     pub fn calc_slope(&self, speed: f64) -> f64 {

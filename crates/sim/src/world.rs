@@ -9,6 +9,7 @@ use crate::state::{ContactMemory, State};
 use crate::step::{self, Scheme};
 use crate::workspace::{Workspace, calc_world_momentum};
 use crate::{Command, rk4};
+use friction::Friction;
 use multibody::Kinematics;
 use spatial::{Frame, Twist, Vec3, Wrench};
 use std::sync::Arc;
@@ -355,9 +356,9 @@ impl World {
         rk4::refresh_touches(&self.model, &self.state, &mut self.ws);
     }
 
-    /// Gives the points that touch at the present state their bristles: `deflection` of a point, W axes, m, of which the part
-    /// in its tangent plane counts. Points of laws without memory are passed over.
-    pub fn seed_bristles(&mut self, deflection: impl Fn(usize, &TouchReport) -> Vec3) {
+    /// Gives the points that touch at the present state their bristles: `seed` of a point is its deflection, W axes, m, of which the part
+    /// in its tangent plane counts, and the time for which it has stuck, s. Points of laws without memory are passed over.
+    pub fn seed_bristles(&mut self, seed: impl Fn(usize, &TouchReport) -> (Vec3, f64)) {
         self.state_mut().bristles.clear();
         self.refresh_touches();
         let reports: Vec<TouchReport> = self.touches().collect();
@@ -366,7 +367,11 @@ impl World {
             if !self.model.laws[touch.pair as usize].remembers() || report.gap >= 0.0 {
                 continue;
             }
-            let (s, normal_w) = (deflection(seeded, report), touch.normal);
+            let ((s, stuck), normal_w) = (seed(seeded, report), touch.normal);
+            let rest = match self.model.laws[touch.pair as usize].friction {
+                Some(Friction::Bristle(law)) => law.levels().calc_rested(stuck),
+                _ => touch.rest,
+            };
             seeded += 1;
             self.state.bristles.push(ContactMemory {
                 pair: touch.pair,
@@ -374,7 +379,7 @@ impl World {
                 s_w: s - normal_w * normal_w.dot(&s),
                 normal_w,
                 turn_w: Vec3::zeros(),
-                rest: touch.rest,
+                rest,
                 point_b: touch.local_b,
             });
         }

@@ -58,6 +58,10 @@ fn add_mount(place: &str, mass: f64, all: &mut Vec<Hypothesis>) {
     }
 }
 
+/// Dwell times (s) and breakaway levels (in sliding ones) at which a contact that gains strength at rest is screened.
+const DWELLS: [f64; 4] = [0.05, 0.2, 0.8, 3.2];
+const STRONGER: [f64; 2] = [1.1, 1.3];
+
 fn add_friction(place: &str, [mu, k_b, c_b]: [f64; 3], all: &mut Vec<Hypothesis>) {
     let level = vec![Coordinate { bounds: [1e-3, 5.0], ..Coordinate::level("mu", mu) }];
     all.push(hypothesis("friction-coefficient", place, level).screened(&[(0, 1e-5)]).nominal_number());
@@ -91,9 +95,10 @@ fn add_friction(place: &str, [mu, k_b, c_b]: [f64; 3], all: &mut Vec<Hypothesis>
         Coordinate { bounds: [1e-3, 5.0], ..Coordinate::level("mu_s_inf", mu) },
         Coordinate::log("time_constant", 0.3, [1e-3, 100.0]),
     ];
-    all.push(hypothesis("friction-dwell-time", place, dwell).screened_on(
-        1,
-        &log_grid(0.02, 5.12, 1.0),
-        &[(vec![(0, 1.0)], 1e-5)],
-    ));
+    // What slides in the nominal model has no rest that could make it stronger: it has to hold for that, so that only secants tell.
+    let points = DWELLS.iter().flat_map(|time| STRONGER.iter().map(move |by| (*time, *by)));
+    let dwell = hypothesis("friction-dwell-time", place, dwell);
+    all.push(points.fold(dwell, |dwell, (time, by)| {
+        dwell.screened_at(&format!("time_constant = {time:.2}, {by:.1} mu"), &[vec![by * mu, time.ln()]])
+    }));
 }
