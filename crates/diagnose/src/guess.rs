@@ -65,7 +65,8 @@ fn calc_still(v: usize, tape: &Tape, time: f64) -> f64 {
         let before = place.times[..*i].partition_point(|s| *s <= t - LAG);
         before > 0 && (value(*i) - value(before - 1)).norm() > STILL * (t - place.times[before - 1])
     });
-    time - moved.map_or(tape.span.0, |i| place.times[i])
+    // It has come to rest where the stretch that still shows a way begins.
+    time - moved.map_or(tape.span.0, |i| place.times[i] - LAG)
 }
 
 fn guess_base(start: &mut Start, v: usize, tape: &Tape, time: f64, of_base: impl Fn(usize, usize) -> bool) {

@@ -65,7 +65,7 @@ pub fn judge(
         let mut whole = follow_with(stage, plant, set.clone(), &runs, Effort::JUDGED)?;
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
         if is_last(known) && known.rms() < PLAUSIBLE {
-            let anew = stage.begun_anew(&built, &whole.segments, Effort::JUDGED);
+            let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED, lost::POOR));
             whole = fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?;
         }
         let near = |whole: &Fit| -> Vec<Segment> {

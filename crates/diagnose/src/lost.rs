@@ -8,6 +8,8 @@ use crate::linear::{Segment, Stage};
 use crate::plant::Built;
 use rayon::prelude::*;
 
+/// Mean square from which on the start of a run is suspected to stand in a wrong valley.
+pub(crate) const POOR: f64 = 1.15;
 /// Root mean square up to which a stretch is near the model.
 pub(crate) const NEAR: f64 = 3.0;
 /// Share of the windows, and of whole runs, that may be lost where the model is not doubted for it.
@@ -52,7 +54,7 @@ pub(crate) fn cut_off(stage: &Stage<'_>, whole: Fit) -> Fit {
 fn followed_part(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
     let mut now = Segment { columns: None, ..run.clone() };
     now.span.to = run.span.from + FIRST * (run.span.to - run.span.from);
-    now = stage.begun_anew(built, &[now], Effort::STARTS).pop()?;
+    now = stage.begun_anew(built, &[now], (Effort::STARTS, POOR)).pop()?;
     for _ in 0..TURNS {
         let end = followed_until(stage, built, &Segment { span: run.span, ..now.clone() });
         if end <= now.span.to {

@@ -51,6 +51,8 @@ pub struct Limits {
     pub effects: usize,
     /// Hypotheses refitted in each round.
     pub refits: usize,
+    /// Ends of a refit of one hypothesis from which longer windows are tried.
+    pub ends: usize,
 }
 
 /// Refits of a first look, and of a kept set.
@@ -75,6 +77,8 @@ const WORTHWHILE: f64 = 0.2;
 const UNPROMISING: f64 = 0.08;
 /// Promise relative to what another refit has brought below which none is made.
 const RIVAL: f64 = 0.9;
+/// The same for one with many valleys, whose promise says less.
+const VALLEY: f64 = 0.6;
 /// Share of the excess that cheap hypotheses promise where those that are dear to screen need not be.
 const SUFFICIENT: f64 = 0.5;
 /// Share of the excess that a set must leave for further screens in a round.
@@ -170,6 +174,8 @@ fn refit_best(
 ) -> Result<(Option<Standing>, Vec<Attempt>), DiagnoseError> {
     let mut attempts: Vec<Attempt> = Vec::new();
     let mut best: Option<Standing> = None;
+    // What looks alike in short windows may not do so in longer ones.
+    let limits = &Limits { ends: if now.rungs.is_empty() { 1 } else { limits.ends }, ..*limits };
     for is_window in [true, false] {
         if all.is_empty() {
             break;
@@ -235,10 +241,10 @@ fn brought_by(here: &Fit, ready: &[(usize, Fit)]) -> f64 {
     ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max)
 }
 
-/// Whether a standing leaves nothing, in the longest windows at least where these had to be shortened.
+/// Whether a standing leaves nothing; where windows had to be shortened, whether it has come from there to whole runs or explains the longest.
 fn is_done(now: &Standing, best: &Standing) -> bool {
     let has_climbed = best.rungs.is_empty() && !now.rungs.is_empty();
-    !best.judge().is_significant() || has_climbed && !best.windows.is_significant()
+    !best.judge().is_significant() || has_climbed && (best.follows() || !best.windows.is_significant())
 }
 
 /// Whether a standing leaves so little of what there was that other hypotheses need not be looked for in this round.
@@ -272,7 +278,7 @@ fn refit_promising(
         let (label, share) = (&h.screens[score.point].label, 100.0 * score.score / here.cost);
         stage.work.watch.step(&format!("  {} {label} promises {share:.1} % of the cost", h.title()));
     }
-    let most = interesting.first().map_or(0.0, |s| s.score);
+    let (leader, most) = (interesting.first().map(|s| s.hypothesis), interesting.first().map_or(0.0, |s| s.score));
     let mut ready: Vec<(usize, Fit)> = Vec::new();
     for score in interesting {
         let h = &all[score.hypothesis];
@@ -285,7 +291,10 @@ fn refit_promising(
         // too, promises are compared.
         let is_open = ready.iter().all(|r| r.1.is_significant());
         let rival = brought_by(here, &ready).min(if is_open { most } else { f64::INFINITY });
-        let is_hopeless = score.score < RIVAL * rival && !h.has_valleys();
+        let is_hopeless = match h.has_valleys() {
+            true => leader != Some(score.hypothesis) && score.score < VALLEY * rival,
+            false => score.score < RIVAL * rival,
+        };
         if !picked.iter().any(|p| std::ptr::eq(*p, score)) || is_hopeless {
             continue;
         }
@@ -302,14 +311,12 @@ fn refit_promising(
             ready.push((at, tried));
         }
     }
-    // Of several starts of one hypothesis the best end counts, and of laws that do alike the plainer.
+    // Of several starts of one hypothesis the best ends count, and of laws that do alike the plainer.
     ready.sort_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)));
-    let mut seen = Vec::new();
+    let mut seen: Vec<usize> = Vec::new();
     ready.retain(|r| {
-        !seen.contains(&r.0) && {
-            seen.push(r.0);
-            true
-        }
+        seen.push(r.0);
+        seen.iter().filter(|at| **at == r.0).count() <= limits.ends
     });
     Ok(ready)
 }

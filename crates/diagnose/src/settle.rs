@@ -23,8 +23,6 @@ const DAMPINGS: usize = 6;
 const LEAST_DAMPING: f64 = 1e-5;
 /// Share of what old columns promise that a step along them must bring for a further one.
 const SERVES: f64 = 0.5;
-/// Mean square from which on a start is suspected to stand in a wrong valley.
-const POOR: f64 = 1.15;
 /// Shares of a segment to which its start is fitted one after the other.
 const GROWTH: [f64; 3] = [0.125, 0.25, 0.5];
 /// Scalars for each free coordinate that a share has at least.
@@ -129,11 +127,12 @@ impl Stage<'_> {
         true
     }
 
-    /// Segments whose starts are begun anew from what their samples say, where that leads to a lower valley than they stand in.
-    pub fn begun_anew(&self, built: &Built, segments: &[Segment], effort: Effort) -> Vec<Segment> {
+    /// Segments whose starts are begun anew from what their samples say, where that leads to a lower valley than they stand in: those whose
+    /// mean square is `poor`.
+    pub fn begun_anew(&self, built: &Built, segments: &[Segment], (effort, poor): (Effort, f64)) -> Vec<Segment> {
         let of = |segment: &Segment| {
             let now = finite(self.residuals(built, segment).norm_squared());
-            if now < POOR * segment.weight * self.count(segment) as f64 {
+            if now < poor * segment.weight * self.count(segment) as f64 {
                 return segment.clone();
             }
             let other = self.fit_growing(built, segment, effort);

@@ -28,14 +28,19 @@ pub struct Standing {
     pub whole: Fit,
     /// Segments of the lengths between, shortest first; none where windows lead to whole runs at once.
     pub rungs: Vec<Vec<Segment>>,
-    /// Root mean square up to which whole runs follow far enough to be judged by.
+    /// Root mean square up to which whole runs follow far enough to be judged by; zero where they never do.
     pub reach: f64,
 }
 
 impl Standing {
     /// One set at both lengths.
     pub fn new(stage: &Stage<'_>, windows: Fit, whole: Fit, rungs: Vec<Vec<Segment>>) -> Self {
-        let reach = if rungs.is_empty() { DIVERGED } else { STEEP };
+        let reach = match rungs.is_empty() {
+            true => DIVERGED,
+            // Where nothing restores what goes astray, windows judge.
+            false if whole.rms() > DIVERGED => 0.0,
+            false => STEEP,
+        };
         Self { windows, whole, rungs, reach }.weighted(stage)
     }
 
@@ -131,7 +136,8 @@ impl Standing {
         let set = windows.set.clone();
         let segments = begun_as(&self.whole.segments, &windows.segments);
         // Where windows had to be shortened, whole runs are far off until the longest windows follow well.
-        let is_far = self.reach <= STEEP && (!rungs.is_empty() || lost::calc_share(stage, &windows) > FEW);
+        let is_far =
+            self.reach <= STEEP && (self.reach == 0.0 || !rungs.is_empty() || lost::calc_share(stage, &windows) > FEW);
         let whole = match is_far {
             true => self.left_far(&windows, segments),
             false => Fit { set: set.clone(), ..self.followed(stage, plant, set.frozen(), &segments)? },
@@ -162,7 +168,7 @@ impl Standing {
         if self.reach > STEEP || whole.rms() < NEAR {
             return Ok(whole);
         }
-        let segments = stage.begun_anew(&whole.built, &whole.segments, Effort::STARTS);
+        let segments = stage.begun_anew(&whole.built, &whole.segments, (Effort::STARTS, lost::POOR));
         let whole = fit(stage, plant, whole.set, segments, Effort { iterations: 1, ..Effort::STARTS })?;
         Ok(lost::cut_off(stage, whole))
     }
@@ -231,7 +237,7 @@ fn fit_in_turns(
 ) -> Result<Fit, DiagnoseError> {
     let mut now = fit(stage, plant, set, segments, effort)?;
     for _ in 0..TURNS {
-        let segments = stage.begun_anew(&now.built, &now.segments, Effort::STARTS);
+        let segments = stage.begun_anew(&now.built, &now.segments, (Effort::STARTS, POOR));
         let is_lower = stage.cost(&now.built, &segments) < LOWER * now.cost;
         if !is_lower {
             break;
@@ -256,7 +262,7 @@ fn weigh(stage: &Stage<'_>, built: &Built, segments: &mut [Segment]) {
 /// A fit of segments of which some may stand in wrong valleys: weighed, and these begun anew, as long as that helps.
 fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) -> Result<Fit, DiagnoseError> {
     let anew = |now: &Fit| {
-        let mut segments = stage.begun_anew(&now.built, &now.segments, Effort::STARTS);
+        let mut segments = stage.begun_anew(&now.built, &now.segments, (Effort::STARTS, POOR));
         segments.iter_mut().for_each(|s| (s.columns, s.weight) = (None, 1.0));
         let cost = stage.cost(&now.built, &segments);
         (segments, cost)
@@ -279,7 +285,9 @@ fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) 
 /// Most times that starts are begun anew.
 const TURNS: usize = 4;
 /// Share of the cost below which that must bring it to be worth another fit.
-const LOWER: f64 = 0.99;
+const LOWER: f64 = 0.95;
+/// Mean square from which on the start of a window is suspected to stand in a wrong valley.
+const POOR: f64 = 1.5;
 
 fn length_of(segments: &[Segment]) -> f64 {
     segments.first().map_or(0.0, |s| s.span.to - s.span.from)

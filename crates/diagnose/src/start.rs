@@ -12,6 +12,8 @@ use std::sync::Arc;
 
 /// Deflection by which a bristle's pull is tried, m.
 const PULL: f64 = 1e-6;
+/// How much stronger than a model thinks a pair may be.
+const STRONGER: f64 = 1.5;
 /// A step too short to move anything, s.
 const INSTANT: f64 = 1e-7;
 
@@ -178,6 +180,8 @@ impl Start {
             let of_pair: Vec<usize> = (0..points.len()).filter(|i| points[*i].0 == pair).collect();
             let Some((_, largest, normal)) = of_pair.first().map(|i| points[*i]) else { continue };
             let s = self.balanced(built, run, (&of_pair, &normal), measured);
+            // A pair may hold more than this model thinks; what it does not hold is cut when it is used.
+            let largest = STRONGER * largest;
             let s = if s.norm() > largest { s * (largest / s.norm()) } else { s };
             of_pair.iter().for_each(|i| self.bristles[*i] = s);
         }
