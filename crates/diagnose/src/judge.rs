@@ -44,12 +44,12 @@ pub struct Scalar {
     pub residual: f64,
 }
 
-/// Estimates the starts of every run under both models, from those that the search has found.
+/// Estimates the starts of every run under both models, from those that the search has found; `follows`: whole runs follow the corrected one.
 pub fn judge(
     stage: &Stage<'_>,
     plant: &Plant,
     (nominal, found): (&Fit, &Fit),
-    window: f64,
+    (window, follows): (f64, bool),
 ) -> Result<Judgement, DiagnoseError> {
     let predict =
         |fit: Fit| Prediction { residuals: fit.segments.iter().map(|s| stage.residuals(&fit.built, s)).collect(), fit };
@@ -64,7 +64,7 @@ pub fn judge(
         begin_from(&mut runs, &known.segments);
         let mut whole = follow_with(stage, plant, set.clone(), &runs, Effort::JUDGED)?;
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
-        if is_last(known) && known.rms() < PLAUSIBLE {
+        if follows && is_last(known) && known.rms() < PLAUSIBLE {
             let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED, lost::POOR));
             whole = fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?;
         }

@@ -103,7 +103,7 @@ pub fn diagnose(
     let segments = segments.into_iter().map(|s| Segment { columns: None, ..s }).collect();
     let found = fit(&stage, &plant, standing.windows.set, segments, FINAL)?;
     clock.stage("predict every run", 0.85);
-    let judgement = judge(&stage, &plant, (&nominal, &found), window)?;
+    let judgement = judge(&stage, &plant, (&nominal, &found), (window, follows))?;
     clock.stage("write", 1.0);
     let findings = Findings {
         title: set.title.clone(),
@@ -122,7 +122,7 @@ pub fn diagnose(
 }
 
 /// The last fit, of all samples.
-const FINAL: Effort = Effort { iterations: 8, share: 1e-6, reuse: true };
+const FINAL: Effort = Effort { iterations: 6, share: 1e-5, reuse: true };
 /// Samples of a channel of a run that are enough to search by.
 const ENOUGH: usize = 3000;
 

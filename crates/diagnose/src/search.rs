@@ -61,6 +61,8 @@ const LOOK: Effort = Effort { iterations: 6, share: 2e-3, reuse: true };
 const GLANCE: Effort = Effort { iterations: 2, share: 2e-2, reuse: true };
 /// Growth of the error by which a member that is taken out shows that it is needed.
 const NECESSARY: f64 = 1.3;
+/// The same by which a plainer law shows that it cannot do what another does.
+const PLAINER: f64 = 2.0;
 /// Until it has converged as far as the next round needs it; all samples fit the last set to the end.
 const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, reuse: true };
 /// Promise relative to the best below which a hypothesis is not refitted.
@@ -75,6 +77,8 @@ const LINEAR: f64 = 60.0;
 const WORTHWHILE: f64 = 0.2;
 /// Share of the excess that an effect must promise for a refit, where promises are linear.
 const UNPROMISING: f64 = 0.08;
+/// Difference, as a share of what the best of them has brought, below which refits are not told apart before they have converged.
+const TIE: f64 = 0.01;
 /// Promise relative to what another refit has brought below which none is made.
 const RIVAL: f64 = 0.9;
 /// The same for one with many valleys, whose promise says less.
@@ -132,10 +136,10 @@ pub fn search(
         };
         let found = now.judge().set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
         stage.work.watch.step(&format!("kept {added}: {}, {found}", errors(&now)));
-        now = now.weighted(stage);
+        // A law that has grown into a plainer one has numbers that would follow what is still left.
+        now = simplify(stage, plant, now.weighted(stage), &known)?;
         round += 1;
     }
-    now = simplify(stage, plant, now, &known)?;
     Ok((prune(stage, plant, now)?, attempts))
 }
 
@@ -311,8 +315,20 @@ fn refit_promising(
             ready.push((at, tried));
         }
     }
-    // Of several starts of one hypothesis the best ends count, and of laws that do alike the plainer.
+    // Of several starts of one hypothesis the best ends count, and of laws that do alike the plainer, once they have come to their ends.
     ready.sort_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)));
+    let lowest = ready.first().map_or(0.0, |r| criterion(&r.1));
+    let near = lowest + TIE * brought_by(here, &ready);
+    let tied = ready.iter_mut().filter(|r| criterion(&r.1) < near).collect::<Vec<_>>();
+    if tied.len() > 1 {
+        for (_, tied) in tied {
+            *tied = fit(stage, plant, tied.set.clone(), tied.segments.clone(), WHOLE)?;
+            let found =
+                tied.set.members.last().map(|(h, x)| format!("{} {}", h.title(), told(h, x))).unwrap_or_default();
+            stage.work.watch.step(&format!("to the end: {found}: error {:.4}", tied.rms()));
+        }
+        ready.sort_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)));
+    }
     let mut seen: Vec<usize> = Vec::new();
     ready.retain(|r| {
         seen.push(r.0);
@@ -453,7 +469,12 @@ fn simplify(
         for (name, value) in h.plainer(&x) {
             let is_here = |p: &&Hypothesis| p.name == name && (p.place == h.place || name == AT_CONTACT);
             let Some(plain) = all.iter().find(is_here) else { continue };
-            let tried = now.refit(stage, plant, now.judge().set.without(member).with(plain, &value), LOOK)?;
+            let set = now.judge().set.without(member).with(plain, &value);
+            let near = fit(stage, plant, set.clone(), now.judge().segments.clone(), GLANCE)?;
+            if near.rms() > PLAINER * now.judge().rms() {
+                continue;
+            }
+            let tried = now.refit(stage, plant, set, LOOK)?;
             if !now.is_better(&tried) {
                 stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
                 now = tried;
