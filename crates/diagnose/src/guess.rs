@@ -190,3 +190,45 @@ fn parabola(times: &[f64], values: impl Iterator<Item = Vec3>, time: f64) -> Opt
     let c = (times.len() >= 6).then(|| a.try_inverse()).flatten()? * b;
     Some([c.row(0).transpose(), c.row(1).transpose() / width, c.row(2).transpose() / (width * width)])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use record::Role;
+
+    /// It slides at 20 mm/s until 1 s and rests from there; the readings are off by 5 µm one way and the other.
+    fn slide() -> Tape {
+        let times: Vec<f64> = (0..500).map(|i| f64::from(i) * 0.004).collect();
+        let noise = |i: usize| if i.is_multiple_of(2) { 5e-6 } else { -5e-6 };
+        let value = |(i, t): (usize, &f64)| Value::Vector(Vec3::new(0.02 * t.min(1.0) + noise(i), 0.0, 0.0));
+        let values = times.iter().enumerate().map(value).collect();
+        let reading = Reading {
+            channel: "body.slider.position".to_owned(),
+            quantity: Quantity::Position(0, 0),
+            axes: vec![0, 1],
+            sigma: 5e-6,
+            times,
+            values,
+        };
+        Tape {
+            index: 0,
+            file: String::new(),
+            role: Role::Fit,
+            commands: Vec::new(),
+            readings: vec![reading],
+            events: Vec::new(),
+            offsets: Vec::new(),
+            ticks: Vec::new(),
+            span: (0.0, 2.0),
+        }
+    }
+
+    #[test]
+    fn how_long_it_has_rested_is_told_by_its_measured_place() {
+        let tape = slide();
+        // Two samples: what noise of that size may move the edge of a stretch.
+        assert!((calc_still(0, &tape, 1.6) - 0.6).abs() < 0.008, "{}", calc_still(0, &tape, 1.6));
+        assert!(calc_still(0, &tape, 0.9) < LAG + 0.008, "it slides");
+        assert_eq!(calc_still(1, &tape, 1.6), 0.0, "nothing measures the other one");
+    }
+}

@@ -113,6 +113,9 @@ pub struct Hypothesis {
     pub is_dear: bool,
 }
 
+/// As much as two or three numbers cost.
+const BURDEN: f64 = 25.0;
+
 impl Coordinate {
     /// A linear coordinate without bounds.
     pub fn free(key: &'static str, neutral: f64) -> Self {
@@ -147,7 +150,22 @@ impl Coordinate {
 }
 
 /// The law that stands at a contact for what drags a body that slides there.
-pub const AT_CONTACT: &str = "friction-viscous";
+const AT_CONTACT: &str = "friction-viscous";
+/// What stands at a contact for a place that is measured wrong by a constant.
+const MISPLACED: &str = "contact-geometry-offset";
+
+/// Another reading of what a hypothesis has become.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Alternative {
+    /// Name of the effect.
+    pub name: &'static str,
+    /// Whether it stands at a contact, and not at the same place.
+    pub is_at_contact: bool,
+    /// Its coordinates.
+    pub coordinates: Vec<f64>,
+    /// Those of them that stay as they are.
+    pub held: Vec<usize>,
+}
 
 impl Hypothesis {
     /// `name at place`.
@@ -298,20 +316,36 @@ impl Hypothesis {
         Some(self.clamped(&x))
     }
 
-    /// The law that this one becomes where some of its numbers do nothing, and the coordinates of that.
+    /// The law that this one becomes where some of its numbers do nothing, and likelier readings of the same thing.
     ///
-    /// What slides under its own weight cannot tell drag from viscous friction: there the other name is found at its contact.
-    pub fn plainer(&self, x: &[f64]) -> Vec<(&'static str, Vec<f64>)> {
-        let one = match self.name {
-            "joint-stribeck-friction" => Some(("joint-coulomb-friction", vec![x[0]])),
-            "joint-friction-asymmetry" => Some(("joint-coulomb-friction", vec![0.5 * (x[0] + x[1])])),
-            "joint-backlash" => Some(("joint-elasticity", vec![(-x[1]).exp(), x[2]])),
-            "tether-stiffness" => return vec![("linear-drag", vec![x[4]]), (AT_CONTACT, vec![x[4]])],
-            "friction-stribeck" => Some(("friction-coefficient", vec![x[1]])),
-            "friction-anisotropy" => Some(("friction-coefficient", vec![x[0]])),
-            _ => None,
+    /// What slides under its own weight cannot tell drag from viscous friction, and where only contacts tell places a place that is measured
+    /// wrong cannot be told from a part that sits elsewhere: there the other name is found at the contact.
+    pub fn plainer(&self, x: &[f64]) -> Vec<Alternative> {
+        let here = |name, coordinates| Alternative { name, is_at_contact: false, coordinates, held: Vec::new() };
+        let at_contact = |name, coordinates| Alternative { is_at_contact: true, ..here(name, coordinates) };
+        let moved = |sign: f64| {
+            let coordinates = x.iter().map(|x| sign * x).chain([0.0; 3]).collect();
+            Alternative { held: vec![3, 4, 5], ..at_contact(MISPLACED, coordinates) }
         };
-        one.into_iter().collect()
+        match self.name {
+            "joint-stribeck-friction" => vec![here("joint-coulomb-friction", vec![x[0]])],
+            "joint-friction-asymmetry" => vec![here("joint-coulomb-friction", vec![0.5 * (x[0] + x[1])])],
+            "joint-backlash" => vec![here("joint-elasticity", vec![(-x[1]).exp(), x[2]])],
+            "tether-stiffness" => vec![here("linear-drag", vec![x[4]]), at_contact(AT_CONTACT, vec![x[4]])],
+            "friction-stribeck" => vec![here("friction-coefficient", vec![x[1]])],
+            "friction-anisotropy" => vec![here("friction-coefficient", vec![x[0]])],
+            _ if self.is_bias_of_place() => vec![moved(1.0), moved(-1.0)],
+            _ => Vec::new(),
+        }
+    }
+
+    fn is_bias_of_place(&self) -> bool {
+        self.name == "sensor-bias" && self.place.starts_with("sensor:body.") && self.place.ends_with(".position")
+    }
+
+    /// What it has to bring beside what its numbers cost, in the criterion: cameras are surveyed, parts are bolted on.
+    pub fn burden(&self) -> f64 {
+        if self.is_bias_of_place() { BURDEN } else { 0.0 }
     }
 
     /// Standard errors of the parameters from the covariance of the coordinates, by difference quotients of [`Self::decode`].

@@ -5,7 +5,7 @@ use crate::fit::{Effort, Fit, fit};
 use crate::linear::{Segment, Stage};
 use crate::lost;
 use crate::plant::Plant;
-use crate::standing::follow_with;
+use crate::standing::{POOR, follow_with};
 use crate::stretches::{cut, joined};
 use crate::tape::Tape;
 use nalgebra::DVector;
@@ -74,6 +74,10 @@ pub fn judge(
         let followed = near(&whole);
         stage.along(&built, &followed, &mut windows);
         let mut windowed = fit(stage, plant, set.clone(), windows, Effort::JUDGED)?;
+        if is_last(known) && windowed.rms() < PLAUSIBLE {
+            let anew = stage.begun_anew(&built, &windowed.segments, (Effort::JUDGED, POOR));
+            windowed = fit(stage, plant, set.clone(), anew, Effort { iterations: 0, ..Effort::JUDGED })?;
+        }
         if whole.rms() >= lost::NEAR {
             whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), Effort::JUDGED)?;
             let found = near(&whole);

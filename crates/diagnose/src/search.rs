@@ -8,7 +8,7 @@
 
 use crate::error::DiagnoseError;
 use crate::fit::{Effort, Fit, fit};
-use crate::hypothesis::{AT_CONTACT, Hypothesis, Tier};
+use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::{Segment, Stage};
 use crate::lost;
 use crate::pace;
@@ -316,24 +316,23 @@ fn refit_promising(
         }
     }
     // Of several starts of one hypothesis the best ends count, and of laws that do alike the plainer, once they have come to their ends.
-    ready.sort_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)));
-    let lowest = ready.first().map_or(0.0, |r| criterion(&r.1));
-    let near = lowest + TIE * brought_by(here, &ready);
-    let tied = ready.iter_mut().filter(|r| criterion(&r.1) < near).collect::<Vec<_>>();
-    if tied.len() > 1 {
-        for (_, tied) in tied {
-            *tied = fit(stage, plant, tied.set.clone(), tied.segments.clone(), WHOLE)?;
-            let found =
-                tied.set.members.last().map(|(h, x)| format!("{} {}", h.title(), told(h, x))).unwrap_or_default();
-            stage.work.watch.step(&format!("to the end: {found}: error {:.4}", tied.rms()));
-        }
-        ready.sort_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)));
-    }
+    let by_criterion = |a: &(usize, Fit), b: &(usize, Fit)| criterion(&a.1).total_cmp(&criterion(&b.1));
+    ready.sort_by(by_criterion);
     let mut seen: Vec<usize> = Vec::new();
     ready.retain(|r| {
         seen.push(r.0);
         seen.iter().filter(|at| **at == r.0).count() <= limits.ends
     });
+    let near = ready.first().map_or(0.0, |r| criterion(&r.1)) + TIE * brought_by(here, &ready);
+    let is_tied = |r: &(usize, Fit)| criterion(&r.1) < near;
+    if ready.iter().any(|r| r.0 != ready[0].0 && is_tied(r)) {
+        for (at, tied) in ready.iter_mut().filter(|r| is_tied(r)) {
+            *tied = fit(stage, plant, tied.set.clone(), tied.segments.clone(), WHOLE)?;
+            let title = format!("{} at {}", attempts[*at].name, attempts[*at].place);
+            stage.work.watch.step(&format!("to the end: {title}: error {:.4}", tied.rms()));
+        }
+        ready.sort_by(by_criterion);
+    }
     Ok(ready)
 }
 
@@ -457,7 +456,7 @@ fn prune(stage: &Stage<'_>, plant: &Plant, mut now: Standing) -> Result<Standing
     Ok(now)
 }
 
-/// Puts a plainer law in the place of one that has grown into it.
+/// Puts a plainer law in the place of one that has grown into it, and a likelier one in that of its equal.
 fn simplify(
     stage: &Stage<'_>,
     plant: &Plant,
@@ -466,10 +465,11 @@ fn simplify(
 ) -> Result<Standing, DiagnoseError> {
     for member in 0..now.judge().set.members.len() {
         let (h, x) = now.judge().set.members[member].clone();
-        for (name, value) in h.plainer(&x) {
-            let is_here = |p: &&Hypothesis| p.name == name && (p.place == h.place || name == AT_CONTACT);
+        for other in h.plainer(&x) {
+            let is_here = |p: &&Hypothesis| p.name == other.name && (p.place == h.place || other.is_at_contact);
             let Some(plain) = all.iter().find(is_here) else { continue };
-            let set = now.judge().set.without(member).with(plain, &value);
+            let plain = Hypothesis { held: [&plain.held[..], &other.held[..]].concat(), ..plain.clone() };
+            let set = now.judge().set.without(member).with(&plain, &other.coordinates);
             let near = fit(stage, plant, set.clone(), now.judge().segments.clone(), GLANCE)?;
             if near.rms() > PLAINER * now.judge().rms() {
                 continue;

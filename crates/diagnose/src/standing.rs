@@ -14,9 +14,10 @@ use crate::stretches::STEEP;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Schwarz's criterion.
+/// Schwarz's criterion, with what is held against some members beforehand.
 pub fn criterion(fit: &Fit) -> f64 {
-    fit.cost + fit.set.slots().len() as f64 * (fit.count as f64).ln()
+    let burden: f64 = fit.set.members.iter().map(|(h, _)| h.burden()).sum();
+    fit.cost + fit.set.slots().len() as f64 * (fit.count as f64).ln() + burden
 }
 
 /// A set of effects, fitted at both lengths.
@@ -228,7 +229,7 @@ fn begun_as(whole: &[Segment], windows: &[Segment]) -> Vec<Segment> {
 }
 
 /// A fit whose starts are begun anew as long as that finds lower valleys for some.
-fn fit_in_turns(
+pub(crate) fn fit_in_turns(
     stage: &Stage<'_>,
     plant: &Plant,
     set: EffectSet,
@@ -268,7 +269,7 @@ fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) 
         (segments, cost)
     };
     let (mut segments, mut cost) = anew(&now);
-    for _ in 0..TURNS {
+    for _ in 0..ROBUST {
         weigh(stage, &now.built, &mut segments);
         now = fit(stage, plant, now.set, segments, effort)?;
         let before = cost;
@@ -282,12 +283,13 @@ fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) 
     fit(stage, plant, now.set, segments, effort)
 }
 
-/// Most times that starts are begun anew.
+/// Most times that starts are begun anew, and with weights.
 const TURNS: usize = 4;
+const ROBUST: usize = 2;
 /// Share of the cost below which that must bring it to be worth another fit.
 const LOWER: f64 = 0.95;
 /// Mean square from which on the start of a window is suspected to stand in a wrong valley.
-const POOR: f64 = 1.5;
+pub(crate) const POOR: f64 = 1.5;
 
 fn length_of(segments: &[Segment]) -> f64 {
     segments.first().map_or(0.0, |s| s.span.to - s.span.from)

@@ -211,3 +211,23 @@ fn together(a: Fit, b: Fit) -> Fit {
         ..a
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_worst_and_an_even_selection_speak_for_all() {
+        let mut excesses = vec![0.0; 20];
+        (excesses[7], excesses[8]) = (5.0, 9.0);
+        assert_eq!(spokesmen(&excesses, (2, 4)), [2, 7, 8, 12, 17]);
+        assert_eq!(spokesmen(&excesses[..3], (1, 12)), [0, 1, 2]);
+        assert!(spokesmen(&[], (2, 4)).is_empty());
+    }
+
+    #[test]
+    fn what_noise_leaves_is_not_missed() {
+        // 6 standard deviations, each √(2 n).
+        assert!(!is_missed(100.0 + 80.0, 100) && is_missed(100.0 + 90.0, 100));
+    }
+}

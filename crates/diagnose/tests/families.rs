@@ -3,22 +3,15 @@
 //! Noise, rounding and unknown starts are those of the practice rigs; the run that judges is not one of those that are fitted.
 #![allow(clippy::unwrap_used)]
 
+mod planted;
+
 use diagnose::diagnosis::{Diagnosis, Verdict};
 use diagnose::start::Start;
 use diagnose::synthesise;
 use diagnose::synthetic::as_recorded;
+use planted::{effect, root};
 use record::{RecordedRun, RecordingSet, Role, Series};
 use scenario::spec::{Effect, ParamValue};
-use std::path::{Path, PathBuf};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn effect(name: &str, place: &str, params: &[(&str, ParamValue)]) -> Effect {
-    let params = params.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
-    Effect { name: name.to_owned(), place: place.to_owned(), params }
-}
 
 fn number(x: f64) -> ParamValue {
     ParamValue::Number(x)
@@ -96,6 +89,13 @@ fn check_number(diagnosis: &Diagnosis, key: &str, planted: f64) {
     assert!((found / planted - 1.0).abs() < 0.1, "{key}: {found}, planted {planted}");
 }
 
+/// The bar tells what was planted in it, and a number of that.
+fn check_swing(planted: &Effect, (key, value): (&str, f64)) {
+    let diagnosis = swing(planted);
+    check(&diagnosis, planted);
+    check_number(&diagnosis, key, value);
+}
+
 #[test]
 fn torques_on_a_free_body() {
     let body = "body:target";
@@ -150,11 +150,7 @@ fn friction_and_springs_of_a_joint() {
         (effect("joint-coulomb-friction", hinge, &[("c", number(0.1))]), ("c", 0.1)),
         (effect("joint-cable-stiffness", hinge, &cable), ("k", 0.4)),
     ];
-    for (planted, (key, value)) in cases {
-        let diagnosis = swing(&planted);
-        check(&diagnosis, &planted);
-        check_number(&diagnosis, key, value);
-    }
+    cases.iter().for_each(|(planted, number)| check_swing(planted, *number));
 }
 
 #[test]
@@ -165,11 +161,7 @@ fn faults_of_a_drive() {
         (effect("actuator-lag", hinge, &[("time_constant", number(0.02))]), ("time_constant", 0.02)),
         (effect("actuator-saturation", hinge, &[("limit", number(1.5))]), ("limit", 1.5)),
     ];
-    for (planted, (key, value)) in cases {
-        let diagnosis = swing(&planted);
-        check(&diagnosis, &planted);
-        check_number(&diagnosis, key, value);
-    }
+    cases.iter().for_each(|(planted, number)| check_swing(planted, *number));
 }
 
 /// Ten targets whose inertia the card states wrong by 0.3 to 1 %, otherwise as modelled.

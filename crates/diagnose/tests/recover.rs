@@ -3,15 +3,18 @@
 //! The recordings are noisy and rounded, their initial states are not told, and the runs that judge are not those that were fitted.
 #![allow(clippy::unwrap_used)]
 
+mod planted;
+
 use diagnose::diagnosis::{Diagnosis, Verdict};
 use diagnose::plant::Plant;
 use diagnose::start::Start;
+use planted::{effect, root};
 use record::RecordingSet;
 use scenario::measure::{Gauge, Reading};
 use scenario::spec::{Effect, ParamValue};
 use spatial::{Twist, Vec3, exp_rotation};
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// White noise that depends on seed and place alone (SplitMix64, Box–Muller).
 struct Noise(u64);
@@ -37,10 +40,6 @@ impl Noise {
 
 const ATTITUDE: f64 = 5e-4;
 const GYRO: f64 = 2e-4;
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 fn tumbler() -> Plant {
     Plant::new(scenario::load(&root().join("scenarios/rigs/tumbler.toml"), &[]).unwrap())
@@ -96,11 +95,6 @@ fn record_tumbler(effects: &[Effect], folder: &Path) -> RecordingSet {
     }
     std::fs::write(folder.join("recording.toml"), index).unwrap();
     RecordingSet::load(folder).unwrap()
-}
-
-fn effect(name: &str, place: &str, params: &[(&str, ParamValue)]) -> Effect {
-    let params = params.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
-    Effect { name: name.to_owned(), place: place.to_owned(), params }
 }
 
 fn diagnose_planted(effects: &[Effect]) -> Diagnosis {

@@ -109,3 +109,23 @@ impl Levels {
         -2.0 * speed / (v * v) * (self.rested - self.kinetic) * self.stribeck(speed)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_at_rest_is_told_by_the_rest() {
+        let dwelling = Levels { rested: 0.3, kinetic: 0.25, stribeck_speed: 1e-3, dwell_time: 0.8, fall_time: 2e-3 };
+        // 1 − exp(−0.4/0.8)
+        assert!((dwelling.calc_rested(0.4) - 0.393_469_340_287_366_6).abs() < 1e-15);
+        assert!((dwelling.calc_time_at_rest(dwelling.calc_rested(0.4)) - 0.4).abs() < 1e-15);
+        assert_eq!(dwelling.calc_rested(0.0), 0.0);
+        // Where the level comes back at once any contact is rested, and nothing tells since when.
+        let plain = Levels { dwell_time: 0.0, ..dwelling };
+        assert_eq!((plain.calc_rested(0.0), plain.calc_time_at_rest(1.0)), (1.0, 0.0));
+        // With a drop in place of a fall, it grows while it sticks.
+        let dropping = Levels { stribeck_speed: 0.0, ..dwelling };
+        assert_eq!(dropping.calc_rested(0.4), dwelling.calc_rested(0.4));
+    }
+}
