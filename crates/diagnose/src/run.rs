@@ -99,10 +99,10 @@ pub fn diagnose(
     clock.stage("fit to all samples", 0.75);
     let stage = Stage { tapes: &tapes, ..stage };
     let follows = standing.follows();
-    let set = standing.judge().set.clone();
+    let effects = standing.judge().set.clone();
     let segments = if follows { standing.whole.segments } else { nominal.segments.clone() };
     let segments = segments.into_iter().map(|s| Segment { columns: None, ..s }).collect();
-    let found = fit_in_turns(&stage, &plant, set, segments, FINAL)?;
+    let found = fit_in_turns(&stage, &plant, effects, segments, FINAL)?;
     clock.stage("predict every run", 0.85);
     let judgement = judge(&stage, &plant, (&nominal, &found), (window, follows))?;
     clock.stage("write", 1.0);
