@@ -19,8 +19,6 @@ const HALVINGS: u32 = 3;
 const FINER: u32 = 2;
 /// Free flight bears steps as many times longer as this.
 const FREE: f64 = 16.0;
-/// One window in so many may be as sensitive as it likes.
-const GRAZING: usize = 12;
 /// Windows that are looked at.
 const WINDOWS: usize = 24;
 
@@ -86,10 +84,7 @@ fn calc_difference(stage: &Stage<'_>, built: &Built, segments: &[&Segment], pace
         let difference = (a - b).norm_squared() / stage.count(segment).max(1) as f64;
         if difference.is_finite() { difference.sqrt() } else { f64::INFINITY }
     };
-    let mut all: Vec<f64> = segments.par_iter().map(of).collect();
-    all.sort_by(f64::total_cmp);
-    // Where a part just grazes another, one window in many tells of touches that come or go, not of steps.
-    all[..all.len() - all.len() / GRAZING].last().copied().unwrap_or(0.0)
+    segments.par_iter().map(of).reduce(|| 0.0, f64::max)
 }
 
 /// The longest stretch between two instants at which a sensor reads or a command changes, s; gaps in the data left out.

@@ -45,7 +45,7 @@ pub(crate) struct Findings {
 }
 
 /// Limits of the search.
-const LIMITS: Limits = Limits { effects: 3, refits: 4, ends: 2 };
+const LIMITS: Limits = Limits { effects: 3, refits: 5, ends: 2 };
 /// Error (units of noise) and share of the mismatch up to which what a corrected model leaves may be the errors of its own steps and starts.
 const RIGHT: f64 = 1.1;
 const NEXT_TO_NOTHING: f64 = 0.01;

@@ -81,14 +81,12 @@ const UNPROMISING: f64 = 0.08;
 const TIE: f64 = 0.01;
 /// Promise relative to what another refit has brought below which none is made.
 const RIVAL: f64 = 0.9;
-/// The same for one with many valleys, whose promise says less.
-const VALLEY: f64 = 0.6;
 /// Share of the excess that cheap hypotheses promise where those that are dear to screen need not be.
 const SUFFICIENT: f64 = 0.5;
 /// Share of the excess that a set must leave for further screens in a round.
 const UNEXPLAINED: f64 = 0.05;
 /// Hypotheses of a screen that a watcher hears of.
-const TOLD: usize = 6;
+const TOLD: usize = 8;
 /// Hypotheses, best first, that are screened over whole runs after windows.
 const SCREENED: usize = 30;
 /// Share of the best fall in the windows from which on a refit goes on to whole runs.
@@ -143,7 +141,8 @@ pub fn search(
     Ok((prune(stage, plant, now)?, attempts))
 }
 
-/// Takes finer steps where the found model needs them, over whole runs too where these are near; whether it does.
+/// Takes finer steps where the found model needs them, over whole runs too where these are near and leave something that the steps may have
+/// made; whether it does.
 fn refine(stage: &mut Stage<'_>, standing: &Standing) -> bool {
     let before = stage.pace;
     let built = &standing.judge().built;
@@ -151,7 +150,7 @@ fn refine(stage: &mut Stage<'_>, standing: &Standing) -> bool {
     let step = found.step.min(before.step);
     stage.pace = Pace { step, free: found.free.min(before.free).max(step) };
     let mut worst = None;
-    if standing.whole.rms() < lost::NEAR {
+    if standing.whole.rms() < lost::NEAR && standing.whole.is_significant() {
         let found = pace::refine(stage, built, &standing.whole.segments);
         (stage.pace, worst) = (found.pace, Some(found.worst));
     }
@@ -282,7 +281,7 @@ fn refit_promising(
         let (label, share) = (&h.screens[score.point].label, 100.0 * score.score / here.cost);
         stage.work.watch.step(&format!("  {} {label} promises {share:.1} % of the cost", h.title()));
     }
-    let (leader, most) = (interesting.first().map(|s| s.hypothesis), interesting.first().map_or(0.0, |s| s.score));
+    let most = interesting.first().map_or(0.0, |s| s.score);
     let mut ready: Vec<(usize, Fit)> = Vec::new();
     for score in interesting {
         let h = &all[score.hypothesis];
@@ -295,10 +294,7 @@ fn refit_promising(
         // too, promises are compared.
         let is_open = ready.iter().all(|r| r.1.is_significant());
         let rival = brought_by(here, &ready).min(if is_open { most } else { f64::INFINITY });
-        let is_hopeless = match h.has_valleys() {
-            true => leader != Some(score.hypothesis) && score.score < VALLEY * rival,
-            false => score.score < RIVAL * rival,
-        };
+        let is_hopeless = score.score < RIVAL * rival && !h.has_valleys();
         if !picked.iter().any(|p| std::ptr::eq(*p, score)) || is_hopeless {
             continue;
         }
