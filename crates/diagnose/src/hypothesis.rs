@@ -113,9 +113,6 @@ pub struct Hypothesis {
     pub is_dear: bool,
 }
 
-/// As much as two or three numbers cost.
-const BURDEN: f64 = 25.0;
-
 impl Coordinate {
     /// A linear coordinate without bounds.
     pub fn free(key: &'static str, neutral: f64) -> Self {
@@ -153,6 +150,8 @@ impl Coordinate {
 const AT_CONTACT: &str = "friction-viscous";
 /// What stands at a contact for a place that is measured wrong by a constant.
 const MISPLACED: &str = "contact-geometry-offset";
+/// What is held against the former beside the numbers that it takes: as much as two or three of these cost.
+const BURDEN: f64 = 25.0;
 
 /// Another reading of what a hypothesis has become.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use crate::fit::{Effort, Fit, fit};
 use crate::linear::{Segment, Stage};
 use crate::lost;
 use crate::plant::Plant;
-use crate::standing::{POOR, follow_with};
+use crate::standing::follow_with;
 use crate::stretches::{cut, joined};
 use crate::tape::Tape;
 use nalgebra::DVector;
@@ -65,7 +65,7 @@ pub fn judge(
         let mut whole = follow_with(stage, plant, set.clone(), &runs, Effort::JUDGED)?;
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
         if follows && is_last(known) && known.rms() < PLAUSIBLE {
-            let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED, lost::POOR));
+            let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED, lost::POOR_RUN));
             whole = fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?;
         }
         let near = |whole: &Fit| -> Vec<Segment> {
@@ -75,7 +75,7 @@ pub fn judge(
         stage.along(&built, &followed, &mut windows);
         let mut windowed = fit(stage, plant, set.clone(), windows, Effort::JUDGED)?;
         if is_last(known) && windowed.rms() < PLAUSIBLE {
-            let anew = stage.begun_anew(&built, &windowed.segments, (Effort::JUDGED, POOR));
+            let anew = stage.begun_anew(&built, &windowed.segments, (Effort::JUDGED, lost::POOR_WINDOW));
             windowed = fit(stage, plant, set.clone(), anew, Effort { iterations: 0, ..Effort::JUDGED })?;
         }
         if whole.rms() >= lost::NEAR {

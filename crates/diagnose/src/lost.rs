@@ -9,7 +9,9 @@ use crate::plant::Built;
 use rayon::prelude::*;
 
 /// Mean square from which on the start of a run is suspected to stand in a wrong valley.
-pub(crate) const POOR: f64 = 1.15;
+pub(crate) const POOR_RUN: f64 = 1.15;
+/// The same of a window.
+pub(crate) const POOR_WINDOW: f64 = 1.5;
 /// Root mean square up to which a stretch is near the model.
 pub(crate) const NEAR: f64 = 3.0;
 /// Share of the windows, and of whole runs, that may be lost where the model is not doubted for it.
@@ -30,14 +32,21 @@ pub(crate) fn is_near(stage: &Stage<'_>, built: &Built, segment: &Segment) -> bo
 
 /// Share of a fit's segments that are not near the model.
 pub(crate) fn calc_share(stage: &Stage<'_>, fit: &Fit) -> f64 {
-    let lost = fit.segments.par_iter().filter(|s| !is_near(stage, &fit.built, s)).count();
-    lost as f64 / fit.segments.len().max(1) as f64
+    calc_lost(&find_near(stage, fit))
+}
+
+fn find_near(stage: &Stage<'_>, fit: &Fit) -> Vec<bool> {
+    fit.segments.par_iter().map(|s| is_near(stage, &fit.built, s)).collect()
+}
+
+fn calc_lost(near: &[bool]) -> f64 {
+    near.iter().filter(|near| !**near).count() as f64 / near.len().max(1) as f64
 }
 
 /// A fit of whole runs with those that are lost cut off where the model loses them; as it was where most are lost.
 pub(crate) fn cut_off(stage: &Stage<'_>, whole: Fit) -> Fit {
-    let near: Vec<bool> = whole.segments.par_iter().map(|s| is_near(stage, &whole.built, s)).collect();
-    let share = near.iter().filter(|near| !**near).count() as f64 / near.len().max(1) as f64;
+    let near = find_near(stage, &whole);
+    let share = calc_lost(&near);
     if share == 0.0 || share > RUNS {
         return whole;
     }
@@ -54,7 +63,7 @@ pub(crate) fn cut_off(stage: &Stage<'_>, whole: Fit) -> Fit {
 fn followed_part(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
     let mut now = Segment { columns: None, ..run.clone() };
     now.span.to = run.span.from + FIRST * (run.span.to - run.span.from);
-    now = stage.begun_anew(built, &[now], (Effort::STARTS, POOR)).pop()?;
+    now = stage.begun_anew(built, &[now], (Effort::STARTS, POOR_RUN)).pop()?;
     for _ in 0..TURNS {
         let end = followed_until(stage, built, &Segment { span: run.span, ..now.clone() });
         if end <= now.span.to {

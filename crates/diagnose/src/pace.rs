@@ -14,7 +14,7 @@ pub const TOLERANCE: f64 = 0.05;
 /// The same over a whole run.
 const WHOLE_TOLERANCE: f64 = 0.1;
 /// Halvings that whole runs may ask for.
-const HALVINGS: u32 = 3;
+const HALVINGS: i32 = 3;
 /// Halvings of the scenario's own step that are tried beyond it.
 const FINER: u32 = 2;
 /// Free flight bears steps as many times longer as this.
@@ -35,14 +35,11 @@ pub struct Discretisation {
 pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> Discretisation {
     let every = segments.len().div_ceil(WINDOWS).max(1);
     let some: Vec<&Segment> = segments.iter().skip(every / 2).step_by(every).collect();
-    let mut step = stage.tapes.iter().map(longest_stretch).fold(own, f64::max);
+    let longest = stage.tapes.iter().map(longest_stretch).fold(own, f64::max);
     let finest = own * 0.5f64.powi(FINER as i32);
     let even = |step: f64| Pace { step, free: step };
-    let mut worst = calc_worst(stage, built, &some, even(step));
-    while worst > TOLERANCE && 0.5 * step > finest {
-        step *= 0.5;
-        worst = calc_worst(stage, built, &some, even(step));
-    }
+    let (found, mut worst) = halved(stage, built, &some, even(longest), (TOLERANCE, finest));
+    let step = found.step;
     let mut free = FREE * step;
     while free > step {
         let pace = Pace { step, free };
@@ -60,22 +57,35 @@ pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) 
 /// takes; and what halving them once more would move, units of noise.
 pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment]) -> Discretisation {
     let runs: Vec<&Segment> = runs.iter().collect();
-    let mut pace = stage.pace;
-    let mut worst = calc_worst(stage, built, &runs, pace);
-    for _ in 0..HALVINGS {
-        if worst <= WHOLE_TOLERANCE {
-            break;
-        }
-        pace = Pace { step: 0.5 * pace.step, free: 0.5 * pace.free };
-        worst = calc_worst(stage, built, &runs, pace);
-    }
+    // The finest is not reached.
+    let finest = stage.pace.step * 0.5f64.powi(HALVINGS + 1);
+    let (pace, worst) = halved(stage, built, &runs, stage.pace, (WHOLE_TOLERANCE, finest));
     Discretisation { pace, worst }
+}
+
+/// Steps halved until halving them once more moves nothing by more than a tolerance, or reaches the finest; and what that moves.
+fn halved(
+    stage: &Stage<'_>,
+    built: &Built,
+    segments: &[&Segment],
+    mut pace: Pace,
+    (tolerance, finest): (f64, f64),
+) -> (Pace, f64) {
+    let mut worst = calc_worst(stage, built, segments, pace);
+    while worst > tolerance && 0.5 * pace.step > finest {
+        pace = half(pace);
+        worst = calc_worst(stage, built, segments, pace);
+    }
+    (pace, worst)
+}
+
+fn half(pace: Pace) -> Pace {
+    Pace { step: 0.5 * pace.step, free: 0.5 * pace.free }
 }
 
 /// Largest difference from steps of half the length.
 pub fn calc_worst(stage: &Stage<'_>, built: &Built, segments: &[&Segment], pace: Pace) -> f64 {
-    let half = Pace { step: 0.5 * pace.step, free: 0.5 * pace.free };
-    calc_difference(stage, built, segments, [pace, half])
+    calc_difference(stage, built, segments, [pace, half(pace)])
 }
 
 fn calc_difference(stage: &Stage<'_>, built: &Built, segments: &[&Segment], paces: [Pace; 2]) -> f64 {

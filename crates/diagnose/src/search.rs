@@ -190,10 +190,12 @@ fn refit_best(
         if !is_window && (enough || is_far) {
             break;
         }
-        let (mut scores, cheap) = (screen_aloud(stage, plant, here, &all)?, all.len());
+        let mut scores = screen_aloud(stage, plant, here, &all)?;
+        let mut leaves_dear = is_window && !dear.is_empty();
         // What is dear to screen is screened only where the rest leaves something.
         let promised = scores.first().map_or(0.0, |s| s.score);
-        if is_window && promised < SUFFICIENT * here.excess() && !dear.is_empty() {
+        if leaves_dear && promised < SUFFICIENT * here.excess() {
+            leaves_dear = false;
             let further = screen_aloud(stage, plant, here, dear)?;
             scores.extend(further.into_iter().map(|s| Score { hypothesis: s.hypothesis + all.len(), ..s }));
             scores.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -203,13 +205,12 @@ fn refit_best(
         let least = if now.reach > STEEP { UNPROMISING * here.excess() } else { 0.0 };
         let mut ready = refit_promising(stage, plant, here, (&all, &scores, least), (limits, round), &mut attempts)?;
         // Nor is it left out where what promised enough does not bring it.
-        let is_open = scores.iter().all(|s| s.hypothesis < cheap);
         let left = here.excess() - brought_by(here, &ready);
-        if is_window && is_open && !dear.is_empty() && left > UNEXPLAINED * here.excess() {
+        if leaves_dear && left > UNEXPLAINED * here.excess() {
             let scores = screen_aloud(stage, plant, here, dear)?;
             let further = refit_promising(stage, plant, here, (dear, &scores, least), (limits, round), &mut attempts)?;
             ready.extend(further);
-            ready.sort_by(|a, b| criterion(&a.1).total_cmp(&criterion(&b.1)));
+            ready.sort_by(by_criterion);
             all.extend(dear.iter().cloned());
         }
         // Over whole runs only what the windows did not rule out is screened.
@@ -237,6 +238,11 @@ fn refit_best(
         }
     }
     Ok((best, attempts))
+}
+
+/// The order of refits, best first.
+fn by_criterion(a: &(usize, Fit), b: &(usize, Fit)) -> std::cmp::Ordering {
+    criterion(&a.1).total_cmp(&criterion(&b.1))
 }
 
 /// The largest fall of the cost by a refit.
@@ -312,7 +318,6 @@ fn refit_promising(
         }
     }
     // Of several starts of one hypothesis the best ends count, and of laws that do alike the plainer, once they have come to their ends.
-    let by_criterion = |a: &(usize, Fit), b: &(usize, Fit)| criterion(&a.1).total_cmp(&criterion(&b.1));
     ready.sort_by(by_criterion);
     let mut seen: Vec<usize> = Vec::new();
     ready.retain(|r| {

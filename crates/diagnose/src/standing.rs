@@ -8,7 +8,7 @@ use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::Hypothesis;
 use crate::linear::{Segment, Stage};
-use crate::lost::{self, FEW, NEAR};
+use crate::lost::{self, FEW, NEAR, POOR_WINDOW};
 use crate::plant::{Built, Plant};
 use crate::stretches::STEEP;
 use rayon::prelude::*;
@@ -169,7 +169,7 @@ impl Standing {
         if self.reach > STEEP || whole.rms() < NEAR {
             return Ok(whole);
         }
-        let segments = stage.begun_anew(&whole.built, &whole.segments, (Effort::STARTS, lost::POOR));
+        let segments = stage.begun_anew(&whole.built, &whole.segments, (Effort::STARTS, lost::POOR_RUN));
         let whole = fit(stage, plant, whole.set, segments, Effort { iterations: 1, ..Effort::STARTS })?;
         Ok(lost::cut_off(stage, whole))
     }
@@ -238,7 +238,7 @@ pub(crate) fn fit_in_turns(
 ) -> Result<Fit, DiagnoseError> {
     let mut now = fit(stage, plant, set, segments, effort)?;
     for _ in 0..TURNS {
-        let segments = stage.begun_anew(&now.built, &now.segments, (Effort::STARTS, POOR));
+        let segments = stage.begun_anew(&now.built, &now.segments, (Effort::STARTS, POOR_WINDOW));
         let is_lower = stage.cost(&now.built, &segments) < LOWER * now.cost;
         if !is_lower {
             break;
@@ -263,7 +263,7 @@ fn weigh(stage: &Stage<'_>, built: &Built, segments: &mut [Segment]) {
 /// A fit of segments of which some may stand in wrong valleys: weighed, and these begun anew, as long as that helps.
 fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) -> Result<Fit, DiagnoseError> {
     let anew = |now: &Fit| {
-        let mut segments = stage.begun_anew(&now.built, &now.segments, (Effort::STARTS, POOR));
+        let mut segments = stage.begun_anew(&now.built, &now.segments, (Effort::STARTS, POOR_WINDOW));
         segments.iter_mut().for_each(|s| (s.columns, s.weight) = (None, 1.0));
         let cost = stage.cost(&now.built, &segments);
         (segments, cost)
@@ -288,8 +288,6 @@ const TURNS: usize = 4;
 const ROBUST: usize = 2;
 /// Share of the cost below which that must bring it to be worth another fit.
 const LOWER: f64 = 0.95;
-/// Mean square from which on the start of a window is suspected to stand in a wrong valley.
-pub(crate) const POOR: f64 = 1.5;
 
 fn length_of(segments: &[Segment]) -> f64 {
     segments.first().map_or(0.0, |s| s.span.to - s.span.from)

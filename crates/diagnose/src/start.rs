@@ -170,7 +170,7 @@ impl Start {
                 _ => 0.0,
             };
             reach.borrow_mut().push((touch.pair, reaches, touch.normal_w));
-            Default::default()
+            (Vec3::zeros(), 0.0)
         });
         let points = reach.into_inner();
         let mut pairs: Vec<usize> = points.iter().map(|p| p.0).collect();

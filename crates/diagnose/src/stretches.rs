@@ -127,14 +127,18 @@ fn representative(stage: &Stage<'_>, fit: &Fit, many: f64) -> Fit {
     if fit.segments.len() <= 2 * most {
         return fit.clone();
     }
-    let excesses: Vec<f64> = fit.segments.par_iter().map(|s| calc_excess(stage, &fit.built, s)).collect();
-    let chosen = spokesmen(&excesses, (most, most));
-    of_segments(stage, fit, chosen.iter().map(|i| fit.segments[*i].clone()).collect())
+    of_spokesmen(stage, fit, (most, most))
 }
 
-fn calc_excess(stage: &Stage<'_>, built: &Built, segment: &Segment) -> f64 {
-    let r = stage.residuals(built, segment);
-    r.norm_squared() - r.len() as f64
+/// A fit of so many of its worst segments, and of an even selection.
+fn of_spokesmen(stage: &Stage<'_>, fit: &Fit, (worst, even): (usize, usize)) -> Fit {
+    let excess = |s: &Segment| {
+        let r = stage.residuals(&fit.built, s);
+        r.norm_squared() - r.len() as f64
+    };
+    let excesses: Vec<f64> = fit.segments.par_iter().map(excess).collect();
+    let chosen = spokesmen(&excesses, (worst, even));
+    of_segments(stage, fit, chosen.iter().map(|i| fit.segments[*i].clone()).collect())
 }
 
 /// Indices of the worst of some segments, and of an even selection of all, in order.
@@ -162,9 +166,7 @@ fn long(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, flights: Vec<Segment>) 
         let third = stage.tapes.iter().map(|t| (t.span.1 - t.span.0) / 3.0).fold(0.0, f64::max);
         let thirds = cut(&nominal.built, stage.tapes, Some(third), |t| t.role == Role::Fit);
         let thirds = fit(stage, plant, EffectSet::default(), thirds, Effort::STARTS)?;
-        let excesses: Vec<f64> = thirds.segments.par_iter().map(|s| calc_excess(stage, &thirds.built, s)).collect();
-        let chosen = spokesmen(&excesses, THIRDS).into_iter().map(|i| thirds.segments[i].clone()).collect();
-        return Ok(of_segments(stage, &thirds, chosen));
+        return Ok(of_spokesmen(stage, &thirds, THIRDS));
     }
     fit(stage, plant, EffectSet::default(), flights, Effort::STARTS)
 }
