@@ -102,7 +102,8 @@ impl Tape {
         };
         let readings = self.readings.iter().map(thin).collect();
         let thinned = Self::assemble((&self.file, self.role), self.commands.clone(), readings);
-        Self { index: self.index, ..thinned }
+        // A run ends where it ends, however thinly it is sampled.
+        Self { index: self.index, span: self.span, ..thinned }
     }
 
     pub(crate) fn assemble((file, role): (&str, Role), commands: Vec<CommandTape>, readings: Vec<Reading>) -> Self {

@@ -58,17 +58,12 @@ pub(crate) fn tell(
     (diagnosis, evidence)
 }
 
-/// Share of a run at its end that may be left out without a word.
-const LAST: f64 = 0.01;
-
 /// Runs that the corrected model follows up to an instant only.
 fn lost_runs(findings: &Findings, stage: &Stage<'_>) -> Vec<String> {
     let of = |segment: &Segment| {
         let tape = &stage.tapes[segment.run];
         let (file, until) = (&tape.file, segment.span.to);
-        // Where only every third sample was searched by, runs end a sample or two earlier.
-        let is_short = tape.span.1 - until > LAST * (tape.span.1 - tape.span.0);
-        let is_cut = findings.follows && is_short && !findings.found.set.members.is_empty();
+        let is_cut = findings.follows && until < tape.span.1 && !findings.found.set.members.is_empty();
         is_cut.then(|| {
             format!(
                 "{file} is followed up to {until:.4} s only, as the other runs are to their ends: something else \
