@@ -36,35 +36,85 @@ pub(crate) fn when(stage: &Stage<'_>, nominal: &Fit) -> (f64, f64) {
 /// What a place's missing force depends on, in words with the share of its variance; none where nothing stands out.
 pub(crate) fn dependence(stage: &Stage<'_>, nominal: &Fit, located: &Located, place: &str) -> Option<String> {
     let at = located.places.iter().position(|p| p.name == place)?;
-    let all: Vec<Vec<(String, f64)>> = nominal.segments.iter().map(|s| features(&stage.tapes[s.run], s.span)).collect();
-    let share_of = |k: usize| {
-        let point = |(features, windows): (&Vec<(String, f64)>, &Vec<WindowForce>)| {
-            let (force, (_, feature)) = (&windows[at], features.get(k)?);
-            let (estimate, error) = (*force.estimate.first()?, *force.error.first()?);
-            (error > 0.0 && feature.is_finite()).then_some((*feature, estimate, error.powi(-2)))
-        };
-        calc_share(&mut all.iter().zip(&located.windows).filter_map(point).collect::<Vec<_>>())
-    };
-    let names = all.first()?.iter().map(|(name, _)| name);
-    let (share, name) = names.enumerate().map(|(k, name)| (share_of(k), name)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let Dependence { name, share, .. } = find_dependence(stage, nominal, located, (at, located.strongest(at)))?;
     (share > NAMED).then(|| format!("changes with {name} (R² {share:.2})"))
 }
 
-/// Weighted share of the variance that a straight line explains. No window outvotes all others: weights are bounded by ten times their median.
-fn calc_share(points: &mut [(f64, f64, f64)]) -> f64 {
+/// The quantity that explains most of a missing force.
+pub(crate) struct Dependence {
+    /// The quantity.
+    pub name: String,
+    /// Share of the force's variance that a straight line in it predicts in runs that the line was not fitted to.
+    pub share: f64,
+    /// Its value in each window; NaN where it was not measured.
+    pub values: Vec<f64>,
+}
+
+/// Looks for it among times, places, speeds and ways gone; `column` is the place and which of its numbers.
+pub(crate) fn find_dependence(
+    stage: &Stage<'_>,
+    nominal: &Fit,
+    located: &Located,
+    (place, column): (usize, usize),
+) -> Option<Dependence> {
+    let all: Vec<Vec<(String, f64)>> = nominal.segments.iter().map(|s| features(&stage.tapes[s.run], s.span)).collect();
+    let of = |k: usize| {
+        let values: Vec<f64> = all.iter().map(|f| f.get(k).map_or(f64::NAN, |f| f.1)).collect();
+        let point = |(i, windows): (usize, &Vec<WindowForce>)| {
+            let (y, error) = (*windows[place].estimate.get(column)?, *windows[place].error.get(column)?);
+            let is_told = error > 0.0 && values[i].is_finite();
+            is_told.then_some(Point { run: nominal.segments[i].run, x: values[i], y, weight: error.powi(-2) })
+        };
+        let mut points: Vec<Point> = located.windows.iter().enumerate().filter_map(point).collect();
+        (calc_share(&mut points), values)
+    };
+    let names = all.first()?.iter().map(|(name, _)| name.clone());
+    let told = names.enumerate().map(|(k, name)| {
+        let (share, values) = of(k);
+        Dependence { name, share, values }
+    });
+    told.max_by(|a, b| a.share.total_cmp(&b.share))
+}
+
+/// A window's missing force against a quantity.
+#[derive(Clone, Copy)]
+struct Point {
+    run: usize,
+    x: f64,
+    y: f64,
+    weight: f64,
+}
+
+/// Weighted share of the variance that a straight line predicts, each run by the line of the others. No window outvotes all others: weights
+/// are bounded by ten times their median.
+fn calc_share(points: &mut [Point]) -> f64 {
     if points.len() < WINDOWS {
         return 0.0;
     }
-    points.sort_by(|a, b| a.2.total_cmp(&b.2));
-    let most = 10.0 * points[points.len() / 2].2;
-    points.iter_mut().for_each(|p| p.2 = p.2.min(most));
-    let sum = |f: &dyn Fn(&(f64, f64, f64)) -> f64| points.iter().map(f).sum::<f64>();
-    let all = sum(&|p| p.2);
-    let (x, y) = (sum(&|p| p.2 * p.0) / all, sum(&|p| p.2 * p.1) / all);
-    let xx = sum(&|p| p.2 * (p.0 - x).powi(2));
-    let yy = sum(&|p| p.2 * (p.1 - y).powi(2));
-    let xy = sum(&|p| p.2 * (p.0 - x) * (p.1 - y));
-    if xx > 0.0 && yy > 0.0 { xy * xy / (xx * yy) } else { 0.0 }
+    points.sort_by(|a, b| a.weight.total_cmp(&b.weight));
+    let most = 10.0 * points[points.len() / 2].weight;
+    points.iter_mut().for_each(|p| p.weight = p.weight.min(most));
+    let mut runs: Vec<usize> = points.iter().map(|p| p.run).collect();
+    runs.sort_unstable();
+    runs.dedup();
+    let (_, mean, _) = line(points.iter());
+    let left = |run: &usize| {
+        let others = points.iter().filter(|p| p.run != *run || runs.len() == 1);
+        let (x, y, slope) = line(others);
+        let own = points.iter().filter(|p| p.run == *run);
+        own.map(|p| p.weight * (p.y - y - slope * (p.x - x)).powi(2)).sum::<f64>()
+    };
+    let all: f64 = points.iter().map(|p| p.weight * (p.y - mean).powi(2)).sum();
+    if all > 0.0 { (1.0 - runs.iter().map(left).sum::<f64>() / all).max(0.0) } else { 0.0 }
+}
+
+/// The weighted line of some points: its middle and its slope.
+fn line<'a>(points: impl Iterator<Item = &'a Point> + Clone) -> (f64, f64, f64) {
+    let sum = |f: &dyn Fn(&Point) -> f64| points.clone().map(|p| p.weight * f(p)).sum::<f64>();
+    let all = sum(&|_| 1.0);
+    let (x, y) = (sum(&|p| p.x) / all, sum(&|p| p.y) / all);
+    let (xx, xy) = (sum(&|p| (p.x - x).powi(2)), sum(&|p| (p.x - x) * (p.y - y)));
+    (x, y, if xx > 0.0 { xy / xx } else { 0.0 })
 }
 
 /// Quantities of a window that a missing force may depend on: name and value.
@@ -72,17 +122,19 @@ fn features(tape: &Tape, span: Span) -> Vec<(String, f64)> {
     let mut all = vec![("time".to_owned(), 0.5 * (span.from + span.to) - tape.span.0)];
     for reading in &tape.readings {
         let is_place = matches!(reading.quantity, Quantity::Position(..) | Quantity::JointPosition(_));
-        if !is_place {
+        let is_rate = matches!(
+            reading.quantity,
+            Quantity::LinearVelocity(..) | Quantity::AngularVelocity(..) | Quantity::JointVelocity(_)
+        );
+        if !is_place && !is_rate {
             continue;
         }
         let mean = mean_of(reading, span);
-        all.extend(
-            reading
-                .axes
-                .iter()
-                .enumerate()
-                .map(|(k, axis)| (reading.component(k), mean.map_or(f64::NAN, |m| m[*axis]))),
-        );
+        let component = |(k, axis): (usize, &usize)| (reading.component(k), mean.map_or(f64::NAN, |m| m[*axis]));
+        all.extend(reading.axes.iter().enumerate().map(component));
+        if is_rate {
+            continue;
+        }
         let gone = way(reading, Span { from: tape.span.0, to: 0.5 * (span.from + span.to) }, span.to - span.from);
         let within = way(reading, span, span.to - span.from);
         all.push((format!("the way that {} has gone", reading.channel), gone));
@@ -115,10 +167,15 @@ mod tests {
 
     #[test]
     fn a_line_explains_all_of_its_variance_and_noise_little() {
-        let mut line: Vec<(f64, f64, f64)> = (0..20).map(|i| (f64::from(i), 3.0 + 0.5 * f64::from(i), 1.0)).collect();
-        assert!((calc_share(&mut line) - 1.0).abs() < 1e-12);
-        let mut saw: Vec<(f64, f64, f64)> = (0..20).map(|i| (f64::from(i), f64::from(i % 2), 1.0)).collect();
-        assert!(calc_share(&mut saw) < 0.05);
-        assert_eq!(calc_share(&mut line[..3]), 0.0);
+        let points = |y: &dyn Fn(u32) -> f64| -> Vec<Point> {
+            let of = |i: u32| Point { run: i as usize / 10, x: f64::from(i % 10), y: y(i), weight: 1.0 };
+            (0..20).map(of).collect()
+        };
+        assert!((calc_share(&mut points(&|i| 3.0 + 0.5 * f64::from(i % 10))) - 1.0).abs() < 1e-12);
+        assert!(calc_share(&mut points(&|i| f64::from(i % 2))) < 0.05);
+        assert_eq!(calc_share(&mut points(&f64::from)[..3]), 0.0);
+        // What goes up in one run and down in the other is not predicted.
+        let sign = |i: u32| if i < 10 { 1.0 } else { -1.0 };
+        assert_eq!(calc_share(&mut points(&|i| sign(i) * f64::from(i % 10))), 0.0);
     }
 }

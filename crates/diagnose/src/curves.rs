@@ -1,8 +1,10 @@
 //! Curves of the evidence: channels that matter, and the missing force over time.
 
-use crate::evidence::{Curve, MissingForce};
+use crate::condition::find_dependence;
+use crate::evidence::{Curve, MissingForce, Scatter, ScatterPoint};
 use crate::judge::Scalar;
 use crate::linear::Stage;
+use crate::locate::Located;
 use crate::reading::Value;
 use crate::run::Findings;
 use crate::tape::Tape;
@@ -66,34 +68,104 @@ fn measured(tape: &Tape, scalar: &Scalar) -> Option<f64> {
 
 /// Most places drawn.
 const PLACES: usize = 2;
+/// Share of the mismatch below which a place is not drawn.
+const SMALL: f64 = 0.01;
+/// Share of a force's variance that a quantity must explain for a drawing against it.
+const EXPLAINS: f64 = 0.3;
 
-/// The missing force of the places where most of it acts: its mean over each window of the first run that was fitted.
+/// Missing forces that are drawn: place and which of its numbers, where anything that was measured shows it.
+pub(crate) fn drawn(located: &Located) -> Vec<(usize, usize)> {
+    let places = located.ranked().into_iter().filter(|p| located.share(*p) > SMALL).take(PLACES);
+    let steady = |p: usize| {
+        let columns = located.places[p].columns.iter().enumerate();
+        let is_wave = |label: &str| label.ends_with("sine");
+        columns.filter(move |(_, c)| !is_wave(&c.0)).map(move |(c, _)| (p, c))
+    };
+    places.flat_map(steady).filter(|(p, c)| located.windows.iter().any(|w| w[*p].error[*c] > 0.0)).collect()
+}
+
+/// Unit of a place's number, by its label.
+fn unit_of(place: &str, label: &str) -> &'static str {
+    match label {
+        "level" => "",
+        "bristle" | "stiffness" => "N/m",
+        "viscous" => "N s/m",
+        "damping" => "s/m",
+        _ if label.starts_with("force") => "N",
+        _ if place.starts_with("joint:") || label.starts_with("torque") => "N m",
+        _ => "",
+    }
+}
+
+/// The missing force of the places where most of it acts: its mean over each window of the first run that was fitted; with the law that was
+/// found, as the same estimate sees it.
 pub(crate) fn forces(findings: &Findings, stage: &Stage<'_>) -> Vec<MissingForce> {
     let (located, segments) = (&findings.located, &findings.nominal.segments);
     let Some(run) = segments.first().map(|s| s.run) else { return Vec::new() };
     let windows: Vec<usize> = (0..segments.len()).filter(|i| segments[*i].run == run).collect();
-    let mut all = Vec::new();
-    for p in located.ranked().into_iter().filter(|p| located.share(*p) > 0.01).take(PLACES) {
+    let force = |(p, c): (usize, usize)| {
         let place = &located.places[p];
-        for (c, (label, ..)) in place.columns.iter().enumerate().filter(|(_, c)| c.0.ends_with("constant")) {
-            let of = |f: &dyn Fn(&crate::locate::WindowForce) -> f64| -> Vec<f64> {
-                windows.iter().map(|i| f(&located.windows[*i][p])).collect()
-            };
-            let std_err = of(&|w| w.error[c]);
-            if std_err.iter().all(|e| *e == 0.0) {
-                continue; // Nothing that was measured shows it.
-            }
-            all.push(MissingForce {
-                place: place.name.clone(),
-                freedom: label.trim_end_matches("constant").trim().to_owned(),
-                unit: if label.starts_with("force") { "N".to_owned() } else { "N m".to_owned() },
-                run: stage.tapes[run].file.clone(),
-                t: windows.iter().map(|i| 0.5 * (segments[*i].span.from + segments[*i].span.to)).collect(),
-                estimate: of(&|w| w.estimate[c]),
-                std_err,
-                law: None,
-            });
+        let label = place.columns[c].0.as_str();
+        let of = |f: &dyn Fn(usize) -> f64| -> Vec<f64> { windows.iter().map(|i| f(*i)).collect() };
+        let law = findings.left.as_ref().map(|left| (law_name(findings), of(&|i| law(located, left, i, (p, c)))));
+        MissingForce {
+            place: place.name.clone(),
+            freedom: label.trim_end_matches("constant").trim().to_owned(),
+            unit: unit_of(&place.name, label).to_owned(),
+            run: stage.tapes[run].file.clone(),
+            t: of(&|i| 0.5 * (segments[i].span.from + segments[i].span.to)),
+            estimate: of(&|i| located.windows[i][p].estimate[c]),
+            std_err: of(&|i| located.windows[i][p].error[c]),
+            law,
         }
-    }
-    all
+    };
+    drawn(located).into_iter().map(force).collect()
+}
+
+/// The law's own part of a missing force: what is missing from the nominal model less what is missing from the corrected one.
+fn law(located: &Located, left: &Located, window: usize, (place, column): (usize, usize)) -> f64 {
+    let after = left.windows.get(window).and_then(|w| w.get(place)).and_then(|w| w.estimate.get(column));
+    after.map_or(f64::NAN, |after| located.windows[window][place].estimate[column] - after)
+}
+
+fn law_name(findings: &Findings) -> String {
+    findings.found.set.members.iter().map(|(h, _)| h.name).collect::<Vec<_>>().join(" and ")
+}
+
+/// The missing forces against the quantities that explain most of them.
+pub(crate) fn scatters(findings: &Findings, stage: &Stage<'_>) -> Vec<Scatter> {
+    let located = &findings.located;
+    let against = |(p, c): (usize, usize)| {
+        let found = find_dependence(stage, &findings.nominal, located, (p, c))?;
+        if found.share < EXPLAINS {
+            return None;
+        }
+        let (place, label) = (&located.places[p], located.places[p].columns[c].0.as_str());
+        let windows: Vec<usize> = (0..located.windows.len()).filter(|i| located.windows[*i][p].error[c] > 0.0).collect();
+        let point = |i: &usize| {
+            let window = &located.windows[*i][p];
+            ScatterPoint { x: found.values[*i], y: window.estimate[c], std_err: window.error[c] }
+        };
+        let law = findings.left.as_ref().map(|left| {
+            let mut along: Vec<(f64, f64)> =
+                windows.iter().map(|i| (found.values[*i], law(located, left, *i, (p, c)))).collect();
+            along.sort_by(|a, b| a.0.total_cmp(&b.0));
+            (law_name(findings), along)
+        });
+        let what = label.trim_end_matches("constant").trim();
+        let unit = unit_of(&place.name, label);
+        Some(Scatter {
+            place: place.name.clone(),
+            across: found.name.clone(),
+            up: format!("missing {}{}", if what.is_empty() { "torque" } else { what }, in_unit(unit)),
+            points: windows.iter().map(point).collect(),
+            law,
+            r_squared: found.share,
+        })
+    };
+    drawn(located).into_iter().filter_map(against).collect()
+}
+
+fn in_unit(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(", {unit}") }
 }

@@ -58,7 +58,7 @@ impl EffectSet {
         Self { held: self.slots().into_iter().chain(self.held.iter().copied()).collect(), ..self.clone() }
     }
 
-    fn moved(&self, slots: &[(usize, usize)], by: &[f64]) -> Self {
+    pub(crate) fn moved(&self, slots: &[(usize, usize)], by: &[f64]) -> Self {
         let mut set = self.clone();
         for ((m, k), d) in slots.iter().zip(by) {
             set.members[*m].1[*k] += d;

@@ -9,6 +9,7 @@
 pub mod catalogue;
 mod condition;
 mod curves;
+mod detect;
 pub mod diagnosis;
 pub mod error;
 pub mod evidence;
@@ -40,6 +41,7 @@ mod summary;
 pub mod synthetic;
 pub mod tape;
 mod tell;
+mod uncertainty;
 mod vocabulary;
 pub mod words;
 pub mod work;

@@ -68,6 +68,19 @@ impl Located {
         ((self.score(place) - self.rank(place) as f64) / all.max(1.0)).clamp(0.0, 1.0)
     }
 
+    /// The number of a place that stands out most.
+    pub fn strongest(&self, place: usize) -> usize {
+        let score = |column: &usize| {
+            let of = |w: &Vec<WindowForce>| {
+                let error = w[place].error[*column];
+                if error > 0.0 { (w[place].estimate[*column] / error).powi(2) } else { 0.0 }
+            };
+            self.windows.iter().map(of).sum::<f64>()
+        };
+        let columns = 0..self.places[place].columns.len();
+        columns.max_by(|a, b| score(a).total_cmp(&score(b))).unwrap_or(0)
+    }
+
     /// Places by score, best first.
     pub fn ranked(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.places.len()).collect();
@@ -145,6 +158,17 @@ fn contact_place(contact: &crate::facts::ContactFact) -> Place {
 
 /// Estimates the missing forces of every segment of a fit.
 pub fn locate(stage: &Stage<'_>, plant: &Plant, fit: &Fit, places: Vec<Place>) -> Result<Located, DiagnoseError> {
+    locate_in(stage, plant, fit, places, None)
+}
+
+/// The same in other residuals than those of the fit: what of them a force on the fitted model would explain.
+pub fn locate_in(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    fit: &Fit,
+    places: Vec<Place>,
+    residuals: Option<&[DVector<f64>]>,
+) -> Result<Located, DiagnoseError> {
     let build = |place: &Place| -> Result<Vec<Variation>, DiagnoseError> {
         let vary = |(_, effect, step): &(String, Effect, f64)| {
             let mut effects = fit.set.effects();
@@ -157,13 +181,15 @@ pub fn locate(stage: &Stage<'_>, plant: &Plant, fit: &Fit, places: Vec<Place>) -
     let of_segment: Vec<(Vec<WindowForce>, f64)> = fit
         .segments
         .par_iter()
-        .map(|segment| {
+        .enumerate()
+        .map(|(i, segment)| {
             let r = stage.residuals(&fit.built, segment);
             let start = stage.columns_of(&fit.built, segment, &r);
             let columns: Vec<Vec<DVector<f64>>> =
                 built.iter().map(|vs| vs.iter().map(|v| stage.column(v, segment, &r)).collect()).collect();
             let starts: Vec<&DVector<f64>> = start.columns.iter().collect();
-            let others: Vec<&DVector<f64>> = columns.iter().flatten().chain(std::iter::once(&r)).collect();
+            let told = residuals.map_or(&r, |all| &all[i]);
+            let others: Vec<&DVector<f64>> = columns.iter().flatten().chain(std::iter::once(told)).collect();
             let k = eliminate(&starts, &others, &start.freedoms).reduced;
             split(&k, &columns.iter().map(Vec::len).collect::<Vec<_>>())
         })

@@ -79,7 +79,7 @@ fn halved(
     (pace, worst)
 }
 
-fn half(pace: Pace) -> Pace {
+pub(crate) fn half(pace: Pace) -> Pace {
     Pace { step: 0.5 * pace.step, free: 0.5 * pace.free }
 }
 

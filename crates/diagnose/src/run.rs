@@ -14,7 +14,8 @@ use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::Hypothesis;
 use crate::judge::{Judgement, judge};
 use crate::linear::{Segment, Stage};
-use crate::locate::{Located, locate, places};
+use crate::curves;
+use crate::locate::{Located, locate, locate_in, places};
 use crate::pace::{self, Discretisation};
 use crate::plant::Plant;
 use crate::replay::Pace;
@@ -23,6 +24,7 @@ use crate::standing::{Standing, fit_in_turns, follow};
 use crate::stretches::{self, Stretches, cut};
 use crate::tape::{Tape, load};
 use crate::tell;
+use crate::uncertainty::{self, Uncertainty};
 use crate::work::{Watch, Work};
 use record::{RecordingSet, Role, Severity};
 use scenario::Scenario;
@@ -40,6 +42,9 @@ pub(crate) struct Findings {
     pub attempts: Vec<Attempt>,
     pub verdict: Verdict,
     pub judgement: Judgement,
+    /// Missing forces that the corrected model leaves, as the nominal model sees them; none where nothing was corrected.
+    pub left: Option<Located>,
+    pub uncertainty: Uncertainty,
     pub timings: Vec<evidence::Stage>,
     pub discretisation: Discretisation,
 }
@@ -105,6 +110,9 @@ pub fn diagnose(
     let found = fit_in_turns(&stage, &plant, effects, segments, FINAL)?;
     clock.stage("predict every run", 0.85);
     let judgement = judge(&stage, &plant, (&nominal, &found), (window, follows))?;
+    let left = left_by(&stage, &plant, (&nominal, &located), &judgement)?;
+    clock.stage("judge the numbers", 0.97);
+    let uncertainty = uncertainty::estimate(&stage, &plant, &found)?;
     clock.stage("write", 1.0);
     let findings = Findings {
         title: set.title.clone(),
@@ -116,10 +124,37 @@ pub fn diagnose(
         follows,
         attempts,
         judgement,
+        left,
+        uncertainty,
         timings: clock.timings,
         discretisation,
     };
     Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
+}
+
+/// What the corrected model leaves at the places that are drawn, as forces on the nominal one.
+fn left_by(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    (nominal, located): (&Fit, &Located),
+    judgement: &Judgement,
+) -> Result<Option<Located>, DiagnoseError> {
+    let corrected = &judgement.windowed[1];
+    if corrected.fit.set.members.is_empty() {
+        return Ok(None);
+    }
+    let residuals_of = |segment: &Segment| {
+        let is_same = |s: &Segment| s.run == segment.run && s.span == segment.span;
+        let at = corrected.fit.segments.iter().position(is_same);
+        at.map_or_else(|| stage.residuals(&nominal.built, segment), |i| corrected.residuals[i].clone())
+    };
+    let segments: Vec<Segment> = nominal.segments.iter().map(|s| Segment { columns: None, ..s.clone() }).collect();
+    let residuals: Vec<_> = segments.iter().map(residuals_of).collect();
+    let drawn = curves::drawn(located);
+    let mut places = located.places.clone();
+    places.iter_mut().enumerate().filter(|(p, _)| drawn.iter().all(|d| d.0 != *p)).for_each(|(_, p)| p.columns.clear());
+    let nominal = Fit { segments, ..nominal.clone() };
+    locate_in(stage, plant, &nominal, places, Some(&residuals)).map(Some)
 }
 
 /// The last fit, of all samples.

@@ -9,7 +9,7 @@
 
 use crate::error::DiagnoseError;
 use crate::fit::{Fit, pseudo_inverse, vary};
-use crate::hypothesis::{Hypothesis, Scale, ScreenPoint};
+use crate::hypothesis::{Column, Hypothesis, Scale, ScreenPoint};
 use crate::linear::{Segment, Stage, Variation, eliminate};
 use crate::plant::{Built, Plant};
 use crate::replay::Pace;
@@ -31,6 +31,18 @@ pub struct Score {
     pub rank: usize,
     /// Coordinates to begin a refit with.
     pub start: Vec<f64>,
+    /// How well the data show it.
+    pub shown: Shown,
+}
+
+/// What the Fisher information of a screen says of a hypothesis, starts and active parameters eliminated.
+#[derive(Clone, Debug)]
+pub struct Shown {
+    /// What was varied and the standard error that it would have: a coordinate, in its parameter's unit, or a share of the whole effect where
+    /// that has no derivative at neutral. Infinite where nothing shows it.
+    pub errors: Vec<(String, f64)>,
+    /// Condition number of the scaled information matrix.
+    pub condition: f64,
 }
 
 /// A column of a screen point.
@@ -85,7 +97,7 @@ fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     let scores = points.iter().zip(&probes).zip(products).filter_map(|((at, probes), k)| {
         let hypothesis = &all[at.0];
         score(hypothesis, &hypothesis.screens[at.1], probes, &k, (active.len(), fit.count))
-            .map(|(score, rank, start)| Score { hypothesis: at.0, point: at.1, score, rank, start })
+            .map(|score| Score { hypothesis: at.0, point: at.1, ..score })
     });
     let mut scores: Vec<Score> = scores.collect();
     scores.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -93,7 +105,7 @@ fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
 }
 
 /// A step of an active coordinate: a tenth of its standard error moves the whole residual by a tenth of one unit; a hundredfold of it is still linear.
-fn active_size(fit: &Fit, m: usize, k: usize) -> f64 {
+pub(crate) fn active_size(fit: &Fit, m: usize, k: usize) -> f64 {
     let at = fit.set.slots().iter().position(|s| *s == (m, k)).unwrap_or(0);
     let error = fit.covariance.get((at, at)).map_or(0.0, |v| v.max(0.0).sqrt());
     let coordinate = &fit.set.members[m].0.coordinates[k];
@@ -114,7 +126,7 @@ fn probes_of(
         effects.push(hypothesis.effect(&hypothesis.clamped(&x)));
         plant.build(&effects).ok().map(|built| Variation { built, step })
     };
-    let tuned = |c: &crate::hypothesis::Column| {
+    let tuned = |c: &Column| {
         let first = build(&c.base, &c.direction, c.step)?;
         if c.secant {
             return Some(first);
@@ -224,6 +236,28 @@ fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: &P
     stage.quotients(built, &moved, &r, (&own, &first)).into_iter().unzip()
 }
 
+/// What a point's information matrix says.
+fn find_shown(hypothesis: &Hypothesis, point: &ScreenPoint, (a, inverse): (&DMatrix<f64>, &DMatrix<f64>)) -> Shown {
+    let n = a.nrows();
+    let scale = |i: usize| if a[(i, i)] > 0.0 { a[(i, i)].sqrt().recip() } else { 0.0 };
+    let scaled = DMatrix::from_fn(n, n, |i, j| 0.5 * (a[(i, j)] + a[(j, i)]) * scale(i) * scale(j));
+    let eigenvalues = scaled.symmetric_eigenvalues();
+    let condition = eigenvalues.max() / eigenvalues.min().max(f64::EPSILON);
+    let error = |i: usize| if inverse[(i, i)] > 0.0 { inverse[(i, i)].sqrt() } else { f64::INFINITY };
+    let name = |(i, column): (usize, &Column)| {
+        let moved = column.direction.iter().position(|d| *d != 0.0).filter(|_| !column.secant);
+        match moved.map(|k| (k, &hypothesis.coordinates[k])) {
+            Some((k, coordinate)) => {
+                let slope = coordinate.slope(column.base[k]) * column.direction[k].abs();
+                (coordinate.key.to_owned(), slope * error(i))
+            }
+            None if point.label.is_empty() => ("share".to_owned(), error(i)),
+            None => (format!("share at {}", point.label), error(i)),
+        }
+    };
+    Shown { errors: point.columns.iter().enumerate().map(name).collect(), condition }
+}
+
 /// Promise, rank and first coordinates of a point.
 fn score(
     hypothesis: &Hypothesis,
@@ -231,7 +265,7 @@ fn score(
     probes: &[Probe],
     k: &DMatrix<f64>,
     (active, count): (usize, usize),
-) -> Option<(f64, usize, Vec<f64>)> {
+) -> Option<Score> {
     let n = probes.len();
     if n == 0 || n < point.columns.len() {
         return None;
@@ -255,7 +289,8 @@ fn score(
     let score = -(b.transpose() * &amplitudes)[(0, 0)];
     let weights: Vec<f64> = amplitudes.iter().copied().collect();
     let start = hypothesis.start_from(point, &weights)?;
-    (score.is_finite() && rank > 0).then_some((score, rank, start))
+    let shown = find_shown(hypothesis, point, (&a, &inverse));
+    (score.is_finite() && rank > 0).then_some(Score { hypothesis: 0, point: 0, score, rank, start, shown })
 }
 
 /// A and b of the last `n` columns with the first `active` ones projected out.

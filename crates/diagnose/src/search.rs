@@ -14,7 +14,7 @@ use crate::lost;
 use crate::pace;
 use crate::plant::Plant;
 use crate::replay::Pace;
-use crate::screen::{Score, screen};
+use crate::screen::{Score, Shown, screen};
 use crate::standing::{Standing, criterion, told};
 use crate::start::count_memory;
 use crate::stretches::STEEP;
@@ -42,6 +42,8 @@ pub struct Attempt {
     pub kept: bool,
     /// Coordinates after the refit.
     pub found: Vec<f64>,
+    /// How well the data show it.
+    pub shown: Shown,
 }
 
 /// How hard to search.
@@ -138,7 +140,24 @@ pub fn search(
         now = simplify(stage, plant, now.weighted(stage), &known)?;
         round += 1;
     }
+    if attempts.is_empty() {
+        attempts = only_screened(stage, plant, &now.windows, hypotheses)?;
+    }
     Ok((prune(stage, plant, now)?, attempts))
+}
+
+/// Where nothing is amiss: what would have shown.
+fn only_screened(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    here: &Fit,
+    hypotheses: &Candidates<'_>,
+) -> Result<Vec<Attempt>, DiagnoseError> {
+    let mut all = hypotheses(stage, here)?;
+    all.retain(|h| !h.is_dear);
+    let scores = screen_aloud(stage, plant, here, &all)?;
+    let interesting = scores_of_interest(&all, &scores);
+    Ok(interesting.into_iter().map(|s| Attempt::new(0, &all[s.hypothesis], s, here)).collect())
 }
 
 /// Takes finer steps where the found model needs them, over whole runs too where these are near and leave something that the steps may have
@@ -350,6 +369,7 @@ impl Attempt {
             gain: None,
             kept: false,
             found: score.start.clone(),
+            shown: score.shown.clone(),
         }
     }
 

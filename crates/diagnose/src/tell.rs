@@ -5,9 +5,8 @@ use crate::diagnosis::{
     BeforeAfter, Diagnosis, Errors, FORMAT, Found, Located as LocatedPlace, Rival, Role, RunError, StdErr, Verdict,
 };
 use crate::evidence::{
-    self, Evidence, Heat, HeatRow, Hypothesis, Level, Parameter, Remark, Status, bin_edges, mean_squares,
+    self, Evidence, Heat, HeatRow, Hypothesis, Identifiable, Level, Parameter, Remark, Status, bin_edges, mean_squares,
 };
-use crate::fit::Fit;
 use crate::linear::{Segment, Stage};
 use crate::run::Findings;
 use crate::vocabulary::unit;
@@ -49,11 +48,14 @@ pub(crate) fn tell(
         heat: heat(findings, stage),
         curves: crate::curves::curves(findings, stage),
         forces: crate::curves::forces(findings, stage),
+        scatters: crate::curves::scatters(findings, stage),
+        identifiability: identifiability(findings),
+        detection: crate::detect::detection(stage, &findings.judgement),
+        whiteness: crate::detect::whiteness(findings, stage),
         ranking: ranking(findings),
         parameters: parameters(findings),
-        correlation: correlation(&findings.found.covariance),
+        correlation: correlation(&findings.uncertainty.covariance),
         timings: findings.timings.clone(),
-        ..Evidence::default()
     };
     (diagnosis, evidence)
 }
@@ -90,12 +92,13 @@ fn quality(remark: &record::Remark) -> Remark {
 }
 
 /// Covariance of one member's coordinates; those that were held have none.
-fn covariance_of(fit: &Fit, member: usize) -> DMatrix<f64> {
+fn covariance_of(findings: &Findings, member: usize) -> DMatrix<f64> {
+    let (fit, covariance) = (&findings.found, &findings.uncertainty.covariance);
     let slots = fit.set.slots();
     let n = fit.set.members[member].0.coordinates.len();
     let at = |k: usize| slots.iter().position(|s| *s == (member, k));
     DMatrix::from_fn(n, n, |i, j| match (at(i), at(j)) {
-        (Some(i), Some(j)) => fit.covariance.get((i, j)).copied().unwrap_or(0.0),
+        (Some(i), Some(j)) => covariance.get((i, j)).copied().unwrap_or(0.0),
         _ => 0.0,
     })
 }
@@ -106,7 +109,7 @@ fn effects(findings: &Findings) -> Vec<Found> {
         let effect = h.effect(x);
         let held = |key: &str| fit.set.held.iter().any(|(n, k)| *n == m && h.coordinates[*k].key == key);
         let mut std_err: BTreeMap<String, StdErr> = BTreeMap::new();
-        for (key, error) in h.errors(x, &covariance_of(fit, m)) {
+        for (key, error) in h.errors(x, &covariance_of(findings, m)) {
             let value = if held(key) || error <= 0.0 { f64::INFINITY } else { error };
             match key.split_once('[') {
                 None => {
@@ -211,7 +214,37 @@ pub(crate) fn role(role: record::Role) -> Role {
     }
 }
 
+/// What the first screen's information matrices say, best shown first.
+fn identifiability(findings: &Findings) -> Vec<Identifiable> {
+    let first = findings.attempts.iter().filter(|a| a.round == 0);
+    let of = |a: &crate::search::Attempt| {
+        let remark = match a.shown.condition {
+            _ if a.shown.errors.iter().all(|e| e.1.is_infinite()) => "these recordings cannot show it",
+            condition if condition > RIDGE => "only combinations of its parameters show",
+            _ => "",
+        };
+        let one = |(parameter, std_err): &(String, f64)| Identifiable {
+            effect: a.name.clone(),
+            place: a.place.clone(),
+            unit: unit(&a.name, parameter.split('[').next().unwrap_or(parameter), false).to_owned(),
+            parameter: parameter.clone(),
+            std_err: *std_err,
+            condition: a.shown.condition,
+            remark: remark.to_owned(),
+        };
+        a.shown.errors.iter().map(one).collect::<Vec<_>>()
+    };
+    first.flat_map(of).collect()
+}
+
+/// Condition of a scaled information matrix beyond which single parameters say little.
+const RIDGE: f64 = 1e4;
+
 fn ranking(findings: &Findings) -> Vec<Hypothesis> {
+    let is_rival = |a: &crate::search::Attempt| {
+        let same = |r: &Rival| r.name == a.name && r.place == a.place;
+        findings.found.set.members.iter().any(|(h, _)| rivals(findings, h).iter().any(same))
+    };
     let nan = |x: Option<f64>| x.filter(|x| x.is_finite()).unwrap_or(f64::NAN);
     let of = |a: &crate::search::Attempt| Hypothesis {
         name: a.name.clone(),
@@ -221,9 +254,10 @@ fn ranking(findings: &Findings) -> Vec<Hypothesis> {
         share: a.share,
         refit_fall: nan(a.fall),
         bic_gain: nan(a.gain),
-        held_back_gain: f64::NAN,
+        held_back_gain: if a.kept { nan(a.fall.map(|fall| fall - findings.uncertainty.optimism)) } else { f64::NAN },
         status: match (a.kept, a.fall) {
             (true, _) => Status::Chosen,
+            (false, Some(_)) if is_rival(a) => Status::Rival,
             (false, Some(_)) => Status::Rejected,
             (false, None) => Status::Screened,
         },
@@ -237,7 +271,9 @@ fn parameters(findings: &Findings) -> Vec<Parameter> {
     let mut all = Vec::new();
     for (m, (h, x)) in fit.set.members.iter().enumerate() {
         let nominal = h.decode(&h.neutral());
-        let errors = h.errors(x, &covariance_of(fit, m));
+        let slots = fit.set.slots().into_iter().zip(&findings.uncertainty.from_profile);
+        let is_profiled = slots.filter(|(slot, _)| slot.0 == m).any(|(_, is_profiled)| *is_profiled);
+        let errors = h.errors(x, &covariance_of(findings, m));
         for (((key, value), (_, error)), (_, before)) in h.decode(x).into_iter().zip(errors).zip(nominal) {
             let std_err = if error > 0.0 { error } else { f64::INFINITY };
             all.push(Parameter {
@@ -249,7 +285,7 @@ fn parameters(findings: &Findings) -> Vec<Parameter> {
                 nominal: before,
                 std_err,
                 interval: (value - 1.96 * std_err, value + 1.96 * std_err),
-                from_profile: false,
+                from_profile: is_profiled,
             });
         }
     }
