@@ -127,21 +127,30 @@ const LEAST: f64 = 0.03;
 pub struct Effort {
     /// Most linearisations.
     pub iterations: usize,
-    /// Promised fall of the cost, as a share of the excess and in variances of noise, below which it has converged.
+    /// Promised fall of the cost, as a share of the excess, below which it has converged.
     pub share: f64,
+    /// The same in standard deviations of the cost under noise alone.
+    pub floor: f64,
     /// Whether derivatives by the starts may be those of an earlier fit, as long as they lead downhill.
     pub reuse: bool,
 }
 
 impl Effort {
     /// For starts alone.
-    pub const STARTS: Self = Self { iterations: 6, share: 1e-3, reuse: false };
+    pub const STARTS: Self = Self { iterations: 6, share: 1e-3, floor: 0.0, reuse: false };
     /// For starts that are only judged by.
-    pub const JUDGED: Self = Self { iterations: 5, share: 1e-2, reuse: false };
+    pub const JUDGED: Self = Self { iterations: 5, share: 1e-2, floor: 0.0, reuse: false };
+
+    /// Fall of a fit's cost that is not worth another linearisation.
+    fn enough(&self, fit: &Fit) -> f64 {
+        NEXT_TO_NOTHING.max(self.share * fit.excess()).max(self.floor * fit.spread())
+    }
 }
 
 /// Promised fall of the cost below which a fit has converged whatever its size.
 const NEXT_TO_NOTHING: f64 = 0.3;
+/// Share of what is promised below which a step only creeps.
+const CREEPING: f64 = 0.03;
 /// Share of what old derivatives promise that a step along them must bring for a further one.
 const SERVES: f64 = 0.3;
 /// Most dampings tried for one linearisation.
@@ -175,9 +184,16 @@ pub fn fit(
     };
     let mut steps = Steps::default();
     let mut sizes = first_sizes(&now.set);
-    let mut damping = 1e-3;
+    let mut last = Went { damping: 1e-3, ..Went::default() };
     while now.iterations < effort.iterations && !now.converged {
-        damping = iterate(stage, plant, &mut now, (&mut steps, &mut sizes), (damping, effort))?;
+        let before = now.cost;
+        let went = iterate(stage, plant, &mut now, (&mut steps, &mut sizes), (last.damping, effort))?;
+        // Where the cost is rough the linear model promises what no step brings, however often it is asked.
+        let is_idle = before - now.cost < effort.enough(&now).max(CREEPING * went.promised) && !went.was_blind;
+        if is_idle && last.is_idle && (went.is_fresh || last.is_fresh) {
+            break;
+        }
+        last = Went { is_idle, ..went };
     }
     Ok(now)
 }
@@ -210,14 +226,29 @@ fn first_sizes(set: &EffectSet) -> Vec<f64> {
     set.slots().iter().map(size).collect()
 }
 
-/// One linearisation and the steps tried from it; returns the damping to begin with next time.
+/// How an iteration went.
+#[derive(Clone, Copy, Debug, Default)]
+struct Went {
+    /// Damping to begin with next time.
+    damping: f64,
+    /// Fall of the cost that the linear model promised.
+    promised: f64,
+    /// Whether the derivatives by the starts were new.
+    is_fresh: bool,
+    /// Whether a step of a difference quotient showed nothing.
+    was_blind: bool,
+    /// Whether it brought next to nothing.
+    is_idle: bool,
+}
+
+/// One linearisation and the steps tried from it.
 fn iterate(
     stage: &Stage<'_>,
     plant: &Plant,
     now: &mut Fit,
     (steps, sizes): (&mut Steps, &mut Vec<f64>),
     (mut damping, effort): (f64, Effort),
-) -> Result<f64, DiagnoseError> {
+) -> Result<Went, DiagnoseError> {
     let slots = now.set.slots();
     let variations = vary(plant, &now.set, &slots, sizes)?;
     let linear = stage.linearise(&now.built, &now.segments, &variations, (steps, effort.reuse));
@@ -231,16 +262,17 @@ fn iterate(
     now.covariance = pseudo_inverse(&a);
     let promised = now.cost - left + (b.transpose() * &now.covariance * &b)[(0, 0)];
     let was_known = effort.reuse && now.segments.iter().any(|s| s.columns.is_some());
-    if promised < NEXT_TO_NOTHING.max(effort.share * now.excess()) {
+    let went = |damping: f64| Went { damping, promised, is_fresh: !was_known, was_blind, is_idle: false };
+    if promised < effort.enough(now) {
         now.converged = !was_blind;
-        return Ok(damping);
+        return Ok(went(damping));
     }
     now.segments.iter_mut().zip(&linear).for_each(|(s, l)| s.columns.clone_from(&l.columns));
     for trial in 0..DAMPINGS {
         if trial == 2 && was_known {
             // Old derivatives lead nowhere: new ones next time.
             now.segments.iter_mut().for_each(|s| s.columns = None);
-            return Ok(damping);
+            return Ok(went(damping));
         }
         let linear: Vec<SegmentLinear> = linear.iter().map(|l| l.damped(damping)).collect();
         let k = sum_reduced(&linear);
@@ -255,18 +287,18 @@ fn iterate(
                 (now.set, now.built, now.segments, now.cost) = (set, built, segments, cost);
                 // A step that had to be shortened says nothing about the end of the way, nor does one along old derivatives.
                 let is_plain = trial == 0 && !was_known;
-                now.converged = !was_blind && is_plain && gained < NEXT_TO_NOTHING.max(effort.share * now.excess());
+                now.converged = !was_blind && is_plain && gained < effort.enough(now);
                 if was_known && (trial > 0 || gained < SERVES * promised) {
                     now.segments.iter_mut().for_each(|s| s.columns = None);
                 }
-                return Ok((damping * 0.1).max(1e-9));
+                return Ok(went((damping * 0.1).max(1e-9)));
             }
         }
         damping = (damping * 10.0).max(1e-3);
     }
     // No step helps any more: the linear model has no say below the roughness of the cost.
     now.iterations = effort.iterations;
-    Ok(damping)
+    Ok(went(damping))
 }
 
 /// Longest step of a difference quotient, in widths of the coordinate's range, and what is left of one that leads nowhere.

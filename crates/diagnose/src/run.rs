@@ -105,8 +105,8 @@ pub fn diagnose(
     let stage = Stage { tapes: &tapes, ..stage };
     let follows = standing.follows();
     let effects = standing.judge().set.clone();
-    let segments = if follows { standing.whole.segments } else { nominal.segments.clone() };
-    let segments = segments.into_iter().map(|s| Segment { columns: None, ..s }).collect();
+    let segments = if follows { standing.whole.segments } else { standing.windows.segments };
+    let segments = segments.into_iter().map(|s| Segment { columns: None, weight: 1.0, ..s }).collect();
     let found = fit_in_turns(&stage, &plant, effects, segments, FINAL)?;
     clock.stage("predict every run", 0.85);
     let judgement = judge(&stage, &plant, (&nominal, &found), (window, follows))?;
@@ -158,7 +158,7 @@ fn left_by(
 }
 
 /// The last fit, of all samples.
-const FINAL: Effort = Effort { iterations: 6, share: 1e-5, reuse: true };
+const FINAL: Effort = Effort { iterations: 6, share: 1e-5, floor: 0.005, reuse: true };
 /// Samples of a channel of a run that are enough to search by.
 const ENOUGH: usize = 3000;
 

@@ -58,15 +58,15 @@ pub struct Limits {
 }
 
 /// Refits of a first look, and of a kept set.
-const LOOK: Effort = Effort { iterations: 6, share: 2e-3, reuse: true };
+const LOOK: Effort = Effort { iterations: 6, share: 2e-3, floor: 0.05, reuse: true };
 /// Fits of a set that may be far off.
-const GLANCE: Effort = Effort { iterations: 2, share: 2e-2, reuse: true };
+const GLANCE: Effort = Effort { iterations: 2, share: 2e-2, floor: 0.1, reuse: true };
 /// Growth of the error by which a member that is taken out shows that it is needed.
 const NECESSARY: f64 = 1.3;
 /// The same by which a plainer law shows that it cannot do what another does.
 const PLAINER: f64 = 2.0;
 /// Until it has converged as far as the next round needs it; all samples fit the last set to the end.
-const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, reuse: true };
+const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, floor: 0.02, reuse: true };
 /// Promise relative to the best below which a hypothesis is not refitted.
 const PROMISING: f64 = 0.15;
 
@@ -406,7 +406,7 @@ fn possible(stage: &Stage<'_>, plant: &Plant, now: &Fit, h: &Hypothesis, promise
 
 /// One in so many segments tells how near what remembers may begin, and how far its starts are fitted for that.
 const FEW: usize = 3;
-const BRIEF: Effort = Effort { iterations: 2, share: 1e-2, reuse: false };
+const BRIEF: Effort = Effort { iterations: 2, share: 1e-2, floor: 0.0, reuse: false };
 /// Halvings of a promise.
 const SHARES: i32 = 5;
 
@@ -496,6 +496,8 @@ fn simplify(
                 continue;
             }
             let tried = now.refit(stage, plant, set, LOOK)?;
+            let costs = criterion(tried.judge()) - criterion(now.judge());
+            stage.work.watch.step(&format!("{} instead costs {costs:.1}", plain.title()));
             if !now.is_better(&tried) {
                 stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
                 now = tried;

@@ -278,7 +278,8 @@ fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) 
             break;
         }
     }
-    let is_near = cost < NEAR * NEAR * now.count as f64;
+    // Those that still stand in wrong valleys would drag the others along.
+    let is_near = segments.par_iter().all(|s| lost::is_near(stage, &now.built, s));
     let effort = if is_near { effort } else { Effort { iterations: 0, ..effort } };
     fit(stage, plant, now.set, segments, effort)
 }
