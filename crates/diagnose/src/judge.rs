@@ -60,11 +60,25 @@ pub fn judge(
         let mut windows = cut(&built, stage.tapes, Some(window), |_| true);
         begin_from(&mut windows, &known.segments);
         let first = |windows: &[Segment]| joined(windows, stage.tapes);
+        let restarted = |windows: Vec<Segment>| -> Result<Fit, DiagnoseError> {
+            let windowed = fit(stage, plant, set.clone(), windows, Effort::JUDGED)?;
+            if !is_last(known) || windowed.rms() >= PLAUSIBLE {
+                return Ok(windowed);
+            }
+            let anew = stage.begun_anew(&built, &windowed.segments, (Effort::JUDGED, lost::POOR_WINDOW));
+            fit(stage, plant, set.clone(), anew, Effort { iterations: 0, ..Effort::JUDGED })
+        };
+        if !follows {
+            // Where whole runs go astray their starts are found in windows, if anywhere.
+            let windowed = restarted(windows)?;
+            let whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), Effort::JUDGED)?;
+            return Ok((predict(windowed), predict(whole)));
+        }
         let mut runs = first(&windows);
         begin_from(&mut runs, &known.segments);
         let mut whole = follow_with(stage, plant, set.clone(), &runs, Effort::JUDGED)?;
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
-        if follows && is_last(known) && known.rms() < PLAUSIBLE {
+        if is_last(known) && known.rms() < PLAUSIBLE {
             let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED, lost::POOR_RUN));
             whole = fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?;
         }
@@ -73,17 +87,13 @@ pub fn judge(
         };
         let followed = near(&whole);
         stage.along(&built, &followed, &mut windows);
-        let mut windowed = fit(stage, plant, set.clone(), windows, Effort::JUDGED)?;
-        if is_last(known) && windowed.rms() < PLAUSIBLE {
-            let anew = stage.begun_anew(&built, &windowed.segments, (Effort::JUDGED, lost::POOR_WINDOW));
-            windowed = fit(stage, plant, set.clone(), anew, Effort { iterations: 0, ..Effort::JUDGED })?;
-        }
+        let mut windowed = restarted(windows)?;
         if whole.rms() >= lost::NEAR {
             whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), Effort::JUDGED)?;
             let found = near(&whole);
             if found.len() > followed.len() {
                 stage.along(&built, &found, &mut windowed.segments);
-                windowed = fit(stage, plant, set, windowed.segments, Effort::JUDGED)?;
+                windowed = fit(stage, plant, set.clone(), windowed.segments, Effort::JUDGED)?;
             }
         }
         Ok((predict(windowed), predict(whole)))

@@ -93,6 +93,9 @@ const LONGEST: f64 = 1.0;
 /// Range of that within which a step is kept.
 const FAIR: [f64; 2] = [0.02, 2.0];
 
+/// Steps of derivatives and screens, in steps of a prediction.
+const COARSER: f64 = 2.0;
+
 /// Everything that replays need beside the segment itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a> {
@@ -105,6 +108,19 @@ pub struct Stage<'a> {
 }
 
 impl Stage<'_> {
+    /// The same with longer steps: derivatives and promises bear what predictions do not.
+    pub fn coarser(&self) -> Self {
+        let Pace { step, free } = self.pace;
+        Self { pace: Pace { step: COARSER * step, free: COARSER * free }, ..*self }
+    }
+
+    /// Where derivatives are taken, and the residuals there; `r` are those of a prediction.
+    pub(crate) fn beside(&self, built: &Built, segment: &Segment, r: &DVector<f64>) -> (Self, DVector<f64>) {
+        let coarse = self.coarser();
+        let base = coarse.residuals(built, segment);
+        if base.iter().all(|x| x.is_finite()) { (coarse, base) } else { (*self, r.clone()) }
+    }
+
     /// Residuals of a segment; infinite where the replay left the range of numbers.
     pub fn residuals(&self, built: &Built, segment: &Segment) -> DVector<f64> {
         self.residuals_from(built, segment, &segment.start)
@@ -257,8 +273,9 @@ impl Stage<'_> {
         (all, sizes, known): (&[Freedom], Vec<f64>, Option<&Arc<StartColumns>>),
     ) -> (SegmentLinear, Vec<f64>) {
         let r = self.residuals(built, segment);
-        let (of_start, sizes) = self.start_columns_beside(built, segment, &r, (all, sizes), known);
-        let of_model: Vec<DVector<f64>> = variations.par_iter().map(|v| self.column(v, segment, &r)).collect();
+        let (coarse, base) = self.beside(built, segment, &r);
+        let (of_start, sizes) = coarse.start_columns_beside(built, segment, &base, (all, sizes), known);
+        let of_model: Vec<DVector<f64>> = variations.par_iter().map(|v| coarse.column(v, segment, &base)).collect();
         let s: Vec<&DVector<f64>> = of_start.columns.iter().collect();
         let p: Vec<&DVector<f64>> = of_model.iter().chain(std::iter::once(&r)).collect();
         let linear = eliminate(&s, &p, all);

@@ -12,7 +12,6 @@ use crate::fit::{Fit, pseudo_inverse, vary};
 use crate::hypothesis::{Column, Hypothesis, Scale, ScreenPoint};
 use crate::linear::{Segment, Stage, Variation, eliminate};
 use crate::plant::{Built, Plant};
-use crate::replay::Pace;
 use crate::start::{Freedom, freedoms};
 use crate::stretches::spokesmen;
 use nalgebra::{DMatrix, DVector};
@@ -61,8 +60,6 @@ const SILENT: f64 = 1e-3;
 /// One in so many segments tunes the steps, and so many of the worst.
 const PILOTS: usize = 8;
 const WORST: usize = 2;
-/// Steps of a screen, in steps of a prediction.
-const COARSER: f64 = 2.0;
 /// A screen looks at so many of the longest segments, or at more of shorter ones.
 const SEGMENTS: f64 = 24.0;
 
@@ -77,9 +74,7 @@ pub fn screen(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     let thinned =
         Fit { segments: fit.segments.iter().skip(every / 2).step_by(every).cloned().collect(), ..fit.clone() };
     let share = thinned.segments.len() as f64 / count.max(1) as f64;
-    // Promises bear steps that predictions do not.
-    let pace = Pace { step: COARSER * stage.pace.step, free: COARSER * stage.pace.free };
-    let mut scores = screen_all(&Stage { pace, ..*stage }, plant, &thinned, all)?;
+    let mut scores = screen_all(&stage.coarser(), plant, &thinned, all)?;
     scores.iter_mut().for_each(|s| s.score /= share);
     Ok(scores)
 }

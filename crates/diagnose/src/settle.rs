@@ -82,8 +82,9 @@ impl Stage<'_> {
         let mut now = Settled { segment, cost, shown: 0, iterations: 0, converged };
         let mut damping = 0.0;
         while now.iterations < effort.iterations && !now.converged {
+            let (coarse, base) = self.beside(built, &now.segment, &r);
             let (columns, used): (Vec<DVector<f64>>, Vec<f64>) =
-                self.quotients(built, &now.segment, &r, (&all, &sizes)).into_iter().unzip();
+                coarse.quotients(built, &now.segment, &base, (&all, &sizes)).into_iter().unzip();
             sizes = used;
             now.iterations += 1;
             now.shown = columns.iter().filter(|c| c.norm_squared() > 0.0).count();
