@@ -95,6 +95,8 @@ const FAIR: [f64; 2] = [0.02, 2.0];
 
 /// Steps of derivatives and screens, in steps of a prediction.
 const COARSER: f64 = 2.0;
+/// Root mean square by which these may move a residual and still be taken for derivatives, units of noise.
+const ALIKE: f64 = 0.3;
 
 /// Everything that replays need beside the segment itself.
 #[derive(Clone, Copy, Debug)]
@@ -118,7 +120,8 @@ impl Stage<'_> {
     pub(crate) fn beside(&self, built: &Built, segment: &Segment, r: &DVector<f64>) -> (Self, DVector<f64>) {
         let coarse = self.coarser();
         let base = coarse.residuals(built, segment);
-        if base.iter().all(|x| x.is_finite()) { (coarse, base) } else { (*self, r.clone()) }
+        let moved = (&base - r).norm_squared() / r.len().max(1) as f64;
+        if moved < ALIKE * ALIKE { (coarse, base) } else { (*self, r.clone()) }
     }
 
     /// Residuals of a segment; infinite where the replay left the range of numbers.
