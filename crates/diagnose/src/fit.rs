@@ -150,7 +150,7 @@ impl Effort {
 /// Promised fall of the cost below which a fit has converged whatever its size.
 const NEXT_TO_NOTHING: f64 = 0.3;
 /// Share of what is promised below which a step only creeps.
-const CREEPING: f64 = 0.03;
+const CREEPING: f64 = 0.05;
 /// Share of what old derivatives promise that a step along them must bring for a further one.
 const SERVES: f64 = 0.3;
 /// Most dampings tried for one linearisation.

@@ -88,7 +88,7 @@ pub fn judge(
         let followed = near(&whole);
         stage.along(&built, &followed, &mut windows);
         let mut windowed = restarted(windows)?;
-        if whole.rms() >= lost::NEAR {
+        if whole.rms() >= lost::NEAR && is_last(known) {
             whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), Effort::JUDGED)?;
             let found = near(&whole);
             if found.len() > followed.len() {

@@ -158,7 +158,7 @@ fn left_by(
 }
 
 /// The last fit, of all samples.
-const FINAL: Effort = Effort { iterations: 6, share: 1e-5, floor: 0.005, reuse: true };
+const FINAL: Effort = Effort { iterations: 6, share: 1e-5, floor: 0.02, reuse: true };
 /// Samples of a channel of a run that are enough to search by.
 const ENOUGH: usize = 3000;
 

@@ -81,6 +81,11 @@ impl Standing {
     ) -> Result<Self, DiagnoseError> {
         if self.follows() {
             let whole = fit_in_turns(stage, plant, set, self.whole.segments.clone(), effort)?;
+            if !whole.is_significant() {
+                // Nobody looks at windows any more.
+                let windows = Fit { set: whole.set.clone(), built: whole.built.clone(), ..self.windows.clone() };
+                return Ok(Self { windows, whole, ..self.clone() });
+            }
             let windows = fit(stage, plant, whole.set.frozen(), self.windows.segments.clone(), Effort::STARTS)?;
             let windows = Fit { set: whole.set.clone(), ..windows };
             return Ok(Self { windows, whole, ..self.clone() }.weighted(stage));
