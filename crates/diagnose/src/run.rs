@@ -112,12 +112,17 @@ pub fn diagnose(
     let judgement = judge(&stage, &plant, (&nominal, &found), (window, follows))?;
     let left = left_by(&stage, &plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
-    let uncertainty = uncertainty::estimate(&stage, &plant, &found)?;
+    let verdict = verdict(&judgement, &found, follows);
+    // What explains nothing is not told, nor how sure its numbers are.
+    let uncertainty = match verdict {
+        Verdict::Unknown => Uncertainty { covariance: found.covariance.clone(), ..Uncertainty::default() },
+        _ => uncertainty::estimate(&stage, &plant, &found)?,
+    };
     clock.stage("write", 1.0);
     let findings = Findings {
         title: set.title.clone(),
         window,
-        verdict: verdict(&judgement, &found, follows),
+        verdict,
         located,
         nominal,
         found,
