@@ -141,7 +141,8 @@ pub(crate) fn scatters(findings: &Findings, stage: &Stage<'_>) -> Vec<Scatter> {
             return None;
         }
         let (place, label) = (&located.places[p], located.places[p].columns[c].0.as_str());
-        let windows: Vec<usize> = (0..located.windows.len()).filter(|i| located.windows[*i][p].error[c] > 0.0).collect();
+        let windows: Vec<usize> =
+            (0..located.windows.len()).filter(|i| located.windows[*i][p].error[c] > 0.0).collect();
         let point = |i: &usize| {
             let window = &located.windows[*i][p];
             ScatterPoint { x: found.values[*i], y: window.estimate[c], std_err: window.error[c] }

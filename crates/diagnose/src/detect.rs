@@ -45,7 +45,10 @@ pub(crate) fn detection(stage: &Stage<'_>, judgement: &Judgement) -> Option<Dete
         None => "all windows together",
     };
     Some(Detection {
-        statistic: format!("largest score of {count} (windows, channels and runs): {channel} in {}, {stretch}", tape.file),
+        statistic: format!(
+            "largest score of {count} (windows, channels and runs): {channel} in {}, {stretch}",
+            tape.file
+        ),
         value,
         bound: upper_point(FALSE_ALARM / count as f64),
         false_alarm: FALSE_ALARM,

@@ -222,7 +222,7 @@ pub struct Hypothesis {
     pub refit_fall: f64,
     /// Gain of the information criterion: fall of the cost less `freedoms` · ln N.
     pub bic_gain: f64,
-    /// Gain of log-likelihood on segments that were held back, doubled to compare with the fall of the cost.
+    /// Fall of the cost by the whole chosen set where each run is predicted with numbers that the other runs give, to first order.
     pub held_back_gain: f64,
     /// What became of it.
     pub status: Status,

@@ -119,9 +119,17 @@ fn begin_from(segments: &mut [Segment], known: &[Segment]) {
 impl Prediction {
     /// Root mean square over some runs, units of noise.
     fn rms(&self, wanted: impl Fn(usize) -> bool) -> f64 {
-        let of_wanted = self.fit.segments.iter().zip(&self.residuals).filter(|(s, _)| wanted(s.run));
-        let (cost, count) = of_wanted.fold((0.0, 0), |sum, (_, r)| (sum.0 + r.norm_squared(), sum.1 + r.len()));
-        (cost / count.max(1) as f64).sqrt()
+        let count: usize = self.of(&wanted).map(|r| r.len()).sum();
+        (self.cost(wanted) / count.max(1) as f64).sqrt()
+    }
+
+    /// Squared norm of the residual over some runs.
+    pub fn cost(&self, wanted: impl Fn(usize) -> bool) -> f64 {
+        self.of(&wanted).map(|r| r.norm_squared()).sum()
+    }
+
+    fn of(&self, wanted: &impl Fn(usize) -> bool) -> impl Iterator<Item = &DVector<f64>> {
+        self.fit.segments.iter().zip(&self.residuals).filter(|(s, _)| wanted(s.run)).map(|(_, r)| r)
     }
 
     /// Every scalar of a run, segment by segment, in the order of its samples.

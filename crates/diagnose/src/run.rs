@@ -6,6 +6,7 @@
 //! 4. every run, held-out ones too, is predicted by the nominal and by the corrected model.
 
 use crate::catalogue::hypotheses;
+use crate::curves;
 use crate::diagnosis::{Diagnosis, Verdict};
 use crate::error::DiagnoseError;
 use crate::evidence::{self, Evidence};
@@ -14,7 +15,6 @@ use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::Hypothesis;
 use crate::judge::{Judgement, judge};
 use crate::linear::{Segment, Stage};
-use crate::curves;
 use crate::locate::{Located, locate, locate_in, places};
 use crate::pace::{self, Discretisation};
 use crate::plant::Plant;

@@ -91,8 +91,11 @@ fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     let products = sum_products(stage, fit, &active, &probes);
     let scores = points.iter().zip(&probes).zip(products).filter_map(|((at, probes), k)| {
         let hypothesis = &all[at.0];
-        score(hypothesis, &hypothesis.screens[at.1], probes, &k, (active.len(), fit.count))
-            .map(|score| Score { hypothesis: at.0, point: at.1, ..score })
+        score(hypothesis, &hypothesis.screens[at.1], probes, &k, (active.len(), fit.count)).map(|score| Score {
+            hypothesis: at.0,
+            point: at.1,
+            ..score
+        })
     });
     let mut scores: Vec<Score> = scores.collect();
     scores.sort_by(|a, b| b.score.total_cmp(&a.score));

@@ -81,6 +81,8 @@ const WORTHWHILE: f64 = 0.2;
 const UNPROMISING: f64 = 0.08;
 /// Difference, as a share of what the best of them has brought, below which refits are not told apart before they have converged.
 const TIE: f64 = 0.01;
+/// The same below which a nominal number goes before other physics, once there is an effect.
+const CORRECTION: f64 = 0.05;
 /// Promise relative to what another refit has brought below which none is made.
 const RIVAL: f64 = 0.9;
 /// Share of the excess that cheap hypotheses promise where those that are dear to screen need not be.
@@ -251,7 +253,7 @@ fn refit_best(
             if standing.follows() && now.follows() {
                 attempts[at].tell(&now.whole, &standing.whole);
             }
-            if best.as_ref().is_none_or(|b| standing.is_better(b)) {
+            if best.as_ref().is_none_or(|b| standing.is_better(b) && !is_luxury(now, b, &standing)) {
                 best = Some(standing);
             }
         }
@@ -267,6 +269,20 @@ fn by_criterion(a: &(usize, Fit), b: &(usize, Fit)) -> std::cmp::Ordering {
 /// The largest fall of the cost by a refit.
 fn brought_by(here: &Fit, ready: &[(usize, Fit)]) -> f64 {
     ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max)
+}
+
+/// Whether what one standing does more than another that corrects a nominal number is too little for more physics beside what was found.
+fn is_luxury(now: &Standing, plain: &Standing, other: &Standing) -> bool {
+    let is_nominal =
+        |s: &Standing| s.judge().set.members.last().is_some_and(|(h, _)| h.tier == Tier::Nominal);
+    let [plain_costs, other_costs] = [plain, other].map(|s| criterion(s.judge()));
+    let brought = criterion(now.judge()) - other_costs;
+    !now.judge().set.members.is_empty()
+        && is_nominal(plain)
+        && !is_nominal(other)
+        && plain.is_comparable(other)
+        && now.is_comparable(other)
+        && plain_costs - other_costs < CORRECTION * brought
 }
 
 /// Whether a standing leaves nothing; where windows had to be shortened, whether it has come from there to whole runs or explains the longest.
@@ -352,6 +368,15 @@ fn refit_promising(
             stage.work.watch.step(&format!("to the end: {title}: error {:.4}", tied.rms()));
         }
         ready.sort_by(by_criterion);
+    }
+    // Beside what was found already a number that is slightly off is likelier than more physics.
+    let enough = ready.first().map_or(0.0, |r| criterion(&r.1)) + CORRECTION * brought_by(here, &ready);
+    let is_correction = |r: &(usize, Fit)| {
+        let is_nominal = r.1.set.members.last().is_some_and(|(h, _)| h.tier == Tier::Nominal);
+        is_nominal && criterion(&r.1) < enough
+    };
+    if let Some(at) = ready.iter().position(is_correction).filter(|_| !here.set.members.is_empty()) {
+        ready[..=at].rotate_right(1);
     }
     Ok(ready)
 }

@@ -237,6 +237,18 @@ fn identifiability(findings: &Findings) -> Vec<Identifiable> {
     first.flat_map(of).collect()
 }
 
+/// Fall of the cost by the whole set over the runs that were fitted, in windows where these judge.
+fn fall_of(findings: &Findings) -> f64 {
+    let judged = if findings.follows { &findings.judgement.whole } else { &findings.judgement.windowed };
+    let is_fitted = |run: usize| findings.found.segments.iter().any(|s| s.run == run);
+    let [before, after] = judged.each_ref().map(|p| p.cost(is_fitted));
+    before - after
+}
+
+fn nan_unless_finite(x: f64) -> f64 {
+    if x.is_finite() { x } else { f64::NAN }
+}
+
 /// Condition of a scaled information matrix beyond which single parameters say little.
 const RIDGE: f64 = 1e4;
 
@@ -245,7 +257,8 @@ fn ranking(findings: &Findings) -> Vec<Hypothesis> {
         let same = |r: &Rival| r.name == a.name && r.place == a.place;
         findings.found.set.members.iter().any(|(h, _)| rivals(findings, h).iter().any(same))
     };
-    let nan = |x: Option<f64>| x.filter(|x| x.is_finite()).unwrap_or(f64::NAN);
+    let held_back = nan_unless_finite(fall_of(findings) - findings.uncertainty.optimism);
+    let nan = |x: Option<f64>| x.map_or(f64::NAN, nan_unless_finite);
     let of = |a: &crate::search::Attempt| Hypothesis {
         name: a.name.clone(),
         place: a.place.clone(),
@@ -254,7 +267,7 @@ fn ranking(findings: &Findings) -> Vec<Hypothesis> {
         share: a.share,
         refit_fall: nan(a.fall),
         bic_gain: nan(a.gain),
-        held_back_gain: if a.kept { nan(a.fall.map(|fall| fall - findings.uncertainty.optimism)) } else { f64::NAN },
+        held_back_gain: if a.kept { held_back } else { f64::NAN },
         status: match (a.kept, a.fall) {
             (true, _) => Status::Chosen,
             (false, Some(_)) if is_rival(a) => Status::Rival,

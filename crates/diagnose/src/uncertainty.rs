@@ -50,7 +50,8 @@ pub(crate) fn estimate(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<
         found.segments.par_iter().map(|s| linearised(stage, found, s, &variations)).collect();
     let a: DMatrix<f64> = linear.iter().map(|l| l.reduced.view((0, 0), (n, n)).into_owned()).sum();
     let inverse = pseudo_inverse(&a);
-    let gradients: Vec<DVector<f64>> = linear.iter().map(|l| l.reduced.view((0, n + 1), (n, 1)).column(0).into()).collect();
+    let gradients: Vec<DVector<f64>> =
+        linear.iter().map(|l| l.reduced.view((0, n + 1), (n, 1)).column(0).into()).collect();
     let scatter = calc_scatter(&inverse, &gradients);
     let by_step: DVector<f64> = linear.iter().map(|l| DVector::from(l.reduced.view((0, n), (n, 1)).column(0))).sum();
     let shift = -(&inverse * by_step);

@@ -9,13 +9,9 @@ use diagnose::diagnosis::{Diagnosis, Verdict};
 use diagnose::start::Start;
 use diagnose::synthesise;
 use diagnose::synthetic::as_recorded;
-use planted::{effect, root};
+use planted::{check, check_number, effect, number, root};
 use record::{RecordedRun, RecordingSet, Role, Series};
 use scenario::spec::{Effect, ParamValue};
-
-fn number(x: f64) -> ParamValue {
-    ParamValue::Number(x)
-}
 
 fn vector(x: [f64; 3]) -> ParamValue {
     ParamValue::Numbers(x.to_vec())
@@ -70,23 +66,6 @@ fn swings() -> RecordingSet {
         runs: (0..3).map(run).collect(),
         ..RecordingSet::default()
     }
-}
-
-/// Right name and place, and predictions of the unseen run that noise alone limits.
-fn check(diagnosis: &Diagnosis, planted: &Effect) {
-    let found: Vec<(&str, &str)> = diagnosis.effects.iter().map(|e| (e.name.as_str(), e.place.as_str())).collect();
-    assert_eq!(diagnosis.verdict, Verdict::Explained, "{planted:?}: {found:?} {:?}", diagnosis.error);
-    assert_eq!(found, [(planted.name.as_str(), planted.place.as_str())], "{:?}", diagnosis.effects);
-    let holdout = diagnosis.error.holdout.unwrap();
-    // Nothing restores a hinge: where it sticks and slips, free runs go apart under the true model too, and windows judge.
-    let after = holdout.after.min(diagnosis.error.windowed.after);
-    assert!(after < 1.06 && holdout.before > 1.15 * holdout.after, "{planted:?}: {:?}", diagnosis.error);
-}
-
-/// The number that was planted comes back within a tenth.
-fn check_number(diagnosis: &Diagnosis, key: &str, planted: f64) {
-    let found = diagnosis.effects[0].params[key].numbers().unwrap()[0];
-    assert!((found / planted - 1.0).abs() < 0.1, "{key}: {found}, planted {planted}");
 }
 
 /// The bar tells what was planted in it, and a number of that.
