@@ -111,12 +111,19 @@ impl Fit {
         self.excess() > (SIGMAS * self.spread()).max(LEAST * self.noise)
     }
 
+    /// Whether it leaves so much that its numbers say little.
+    pub fn is_poor(&self) -> bool {
+        self.rms() > POOR
+    }
+
     /// Root mean square of the residual, 1 for a perfect model.
     pub fn rms(&self) -> f64 {
         (self.cost / self.noise.max(f64::MIN_POSITIVE)).sqrt()
     }
 }
 
+/// Root mean square beyond which a fit is poor.
+const POOR: f64 = 2.0;
 /// Excess in standard deviations below which nothing is left to explain.
 const SIGMAS: f64 = 4.0;
 /// Excess per scalar that data sheets' noise figures do not vouch for.

@@ -12,7 +12,7 @@ use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::{Segment, Stage};
 use crate::lost;
 use crate::pace;
-use crate::plant::Plant;
+use crate::plant::{Built, Plant};
 use crate::replay::Pace;
 use crate::screen::{Score, Shown, screen};
 use crate::standing::{Standing, criterion, told};
@@ -167,9 +167,7 @@ fn only_screened(
 fn refine(stage: &mut Stage<'_>, standing: &Standing) -> bool {
     let before = stage.pace;
     let built = &standing.judge().built;
-    let found = pace::choose(stage, built, &standing.windows.segments, before.step).pace;
-    let step = found.step.min(before.step);
-    stage.pace = Pace { step, free: found.free.min(before.free).max(step) };
+    stage.pace = no_coarser(stage, built, &standing.windows.segments);
     let mut worst = None;
     if standing.whole.rms() < lost::NEAR && standing.whole.is_significant() {
         let found = pace::refine(stage, built, &standing.whole.segments);
@@ -182,6 +180,14 @@ fn refine(stage: &mut Stage<'_>, standing: &Standing) -> bool {
         stage.work.watch.step(&format!("steps of {step:.3e} s, {free:.3e} s in free flight{moves}"));
     }
     is_finer
+}
+
+/// Steps that a model needs in some windows, or the present ones where these are finer.
+fn no_coarser(stage: &Stage<'_>, built: &Built, segments: &[Segment]) -> Pace {
+    let now = stage.pace;
+    let found = pace::choose(stage, built, segments, now.step).pace;
+    let step = found.step.min(now.step);
+    Pace { step, free: found.free.min(now.free).max(step) }
 }
 
 fn errors(now: &Standing) -> String {
@@ -244,6 +250,8 @@ fn refit_best(
                 continue;
             }
             let standing = if is_window {
+                // What it adds may be faster than what the nominal model has.
+                let stage = &Stage { pace: no_coarser(stage, &tried.built, &tried.segments), ..*stage };
                 now.climbed(stage, plant, tried, LOOK)?
             } else {
                 Standing { whole: tried, ..now.clone() }
@@ -273,8 +281,7 @@ fn brought_by(here: &Fit, ready: &[(usize, Fit)]) -> f64 {
 
 /// Whether what one standing does more than another that corrects a nominal number is too little for more physics beside what was found.
 fn is_luxury(now: &Standing, plain: &Standing, other: &Standing) -> bool {
-    let is_nominal =
-        |s: &Standing| s.judge().set.members.last().is_some_and(|(h, _)| h.tier == Tier::Nominal);
+    let is_nominal = |s: &Standing| s.judge().set.members.last().is_some_and(|(h, _)| h.tier == Tier::Nominal);
     let [plain_costs, other_costs] = [plain, other].map(|s| criterion(s.judge()));
     let brought = criterion(now.judge()) - other_costs;
     !now.judge().set.members.is_empty()

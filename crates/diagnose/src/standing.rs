@@ -148,13 +148,55 @@ impl Standing {
             true => self.left_far(&windows, segments),
             false => Fit { set: set.clone(), ..self.followed(stage, plant, set.frozen(), &segments)? },
         };
-        let standing = Self { windows, whole, rungs, reach: self.reach };
+        let mut standing = Self { windows, whole, rungs, reach: self.reach };
+        if !standing.follows() && !is_far && !standing.windows.is_poor() {
+            standing = standing.along_the_valley(stage, plant)?;
+        }
+        let set = standing.windows.set.clone();
         // They begin to follow: from now on they judge.
         if standing.follows() && standing.whole.is_significant() {
             standing.refit(stage, plant, set, effort)
         } else {
             Ok(standing)
         }
+    }
+
+    /// The same where whole runs come nearest along the valley in which windows leave the numbers: what these hardly tell, such as how long
+    /// something takes to build up, the order of events in whole runs tells.
+    fn along_the_valley(self, stage: &Stage<'_>, plant: &Plant) -> Result<Self, DiagnoseError> {
+        let (set, covariance) = (&self.windows.set, &self.windows.covariance);
+        let slots = set.slots();
+        if covariance.nrows() != slots.len() {
+            return Ok(self);
+        }
+        let at = |k: usize, distance: f64| {
+            let sigma = covariance[(k, k)].max(f64::MIN_POSITIVE).sqrt();
+            let theta: Vec<f64> = covariance.column(k).iter().map(|c| distance * c / sigma).collect();
+            let moved = set.moved(&slots, &theta);
+            let built = plant.build(&moved.effects()).ok()?;
+            let cost = stage.settle(&built, &self.whole.segments).1;
+            cost.is_finite().then_some((cost, moved))
+        };
+        let mut best = (stage.settle(&self.windows.built, &self.whole.segments).1, set.clone());
+        for k in 0..slots.len() {
+            let mut reached = 0.0;
+            for distance in DISTANCES.iter().flat_map(|d| [*d, -d]) {
+                if let Some(found) = at(k, distance).filter(|f| f.0 < best.0) {
+                    (best, reached) = (found, distance);
+                }
+            }
+            for share in FINER {
+                best = at(k, share * reached).filter(|f| f.0 < best.0).unwrap_or(best);
+            }
+        }
+        let whole = follow(stage, plant, best.1.frozen(), &self.whole.segments)?;
+        let whole = Fit { set: best.1.clone(), ..whole };
+        stage.work.watch.step(&format!("  along the valley: {:.3} over whole runs", whole.rms()));
+        if whole.rms() >= self.whole.rms() {
+            return Ok(self);
+        }
+        let windows = Fit { set: best.1, built: whole.built.clone(), ..self.windows.clone() };
+        Ok(Self { windows, whole, ..self })
     }
 
     /// Whole runs as far off as they were, of a set that was fitted in windows only.
@@ -288,6 +330,10 @@ fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) 
     let effort = if is_near { effort } else { Effort { iterations: 0, ..effort } };
     fit(stage, plant, now.set, segments, effort)
 }
+
+/// Distances along a valley, standard errors of what windows tell, and shares of the best of them at which it is looked at again.
+const DISTANCES: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 100.0, 300.0];
+const FINER: [f64; 6] = [0.4, 0.55, 0.75, 1.3, 1.7, 2.2];
 
 /// Most times that starts are begun anew, and with weights.
 const TURNS: usize = 4;
