@@ -65,6 +65,8 @@ const GLANCE: Effort = Effort { iterations: 2, share: 2e-2, floor: 0.1, reuse: t
 const NECESSARY: f64 = 1.3;
 /// The same by which a plainer law shows that it cannot do what another does.
 const PLAINER: f64 = 2.0;
+/// Cost, as a share of what noise leaves, by which it may predict worse and still be as good: a four-hundredth of the noise.
+const AS_GOOD: f64 = 0.005;
 /// Until it has converged as far as the next round needs it; all samples fit the last set to the end.
 const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, floor: 0.02, reuse: true };
 /// Promise relative to the best below which a hypothesis is not refitted.
@@ -129,6 +131,7 @@ pub fn search(
         let of_round = attempts.iter_mut().filter(|t| t.round == round);
         of_round.for_each(|t| t.kept = format!("{} at {}", t.name, t.place) == added);
         let set = best.judge().set.clone();
+        let before = now;
         let is_finer = refine(stage, &best);
         // What is far from the data yet is not worth fitting to the end, nor what explains them: all samples fit that.
         let effort = if best.judge().rms() > lost::NEAR { LOOK } else { WHOLE };
@@ -139,7 +142,8 @@ pub fn search(
         let found = now.judge().set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
         stage.work.watch.step(&format!("kept {added}: {}, {found}", errors(&now)));
         // A law that has grown into a plainer one has numbers that would follow what is still left.
-        now = simplify(stage, plant, now.weighted(stage), &known)?;
+        let brought = if before.is_comparable(&now) { before.judge().cost - now.judge().cost } else { f64::INFINITY };
+        now = simplify(stage, plant, now.weighted(stage), (&known, brought))?;
         round += 1;
     }
     if attempts.is_empty() {
@@ -514,7 +518,7 @@ fn simplify(
     stage: &Stage<'_>,
     plant: &Plant,
     mut now: Standing,
-    all: &[Hypothesis],
+    (all, brought): (&[Hypothesis], f64),
 ) -> Result<Standing, DiagnoseError> {
     for member in 0..now.judge().set.members.len() {
         let (h, x) = now.judge().set.members[member].clone();
@@ -530,7 +534,8 @@ fn simplify(
             let tried = now.refit(stage, plant, set, LOOK)?;
             let costs = criterion(tried.judge()) - criterion(now.judge());
             stage.work.watch.step(&format!("{} instead costs {costs:.1}", plain.title()));
-            if !now.is_better(&tried) {
+            let is_as_good = tried.is_comparable(&now) && costs < (AS_GOOD * now.judge().noise).min(TIE * brought);
+            if is_as_good || !now.is_better(&tried) {
                 stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
                 now = tried;
                 break;
