@@ -230,8 +230,8 @@ pub struct Hypothesis {
     pub why: String,
 }
 
-/// What became of a hypothesis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What became of a hypothesis, in the order in which a reader wants to see them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Status {
     /// Part of the corrected model.
     Chosen,

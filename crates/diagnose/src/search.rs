@@ -143,13 +143,30 @@ pub fn search(
         stage.work.watch.step(&format!("kept {added}: {}, {found}", errors(&now)));
         // A law that has grown into a plainer one has numbers that would follow what is still left.
         let brought = if before.is_comparable(&now) { before.judge().cost - now.judge().cost } else { f64::INFINITY };
+        let grown = titles(&now);
         now = simplify(stage, plant, now.weighted(stage), (&known, brought))?;
+        grown.iter().zip(titles(&now)).for_each(|(grown, plain)| hand_over(&mut attempts, grown, &plain));
         round += 1;
     }
     if attempts.is_empty() {
         attempts = only_screened(stage, plant, &now.windows, hypotheses)?;
     }
     Ok((prune(stage, plant, now)?, attempts))
+}
+
+/// Name and place of every member.
+fn titles(standing: &Standing) -> Vec<(String, String)> {
+    standing.judge().set.members.iter().map(|(h, _)| (h.name.to_owned(), h.place.clone())).collect()
+}
+
+/// What a law has brought belongs to the plainer one that has taken its place.
+fn hand_over(attempts: &mut Vec<Attempt>, grown: &(String, String), plain: &(String, String)) {
+    let is_grown = |a: &&mut Attempt| a.kept && (&a.name, &a.place) == (&grown.0, &grown.1);
+    let Some(old) = attempts.iter_mut().find(is_grown).filter(|_| grown != plain) else { return };
+    let new = Attempt { name: plain.0.clone(), place: plain.1.clone(), ..old.clone() };
+    (old.kept, old.gain) = (false, None);
+    attempts.retain(|a| (a.round, &a.name, &a.place) != (new.round, &plain.0, &plain.1));
+    attempts.push(new);
 }
 
 /// Where nothing is amiss: what would have shown.
@@ -244,6 +261,7 @@ fn refit_best(
             ready.sort_by(by_criterion);
             all.extend(dear.iter().cloned());
         }
+        put_corrections_first(here, &mut ready);
         // Over whole runs only what the windows did not rule out is screened.
         let order: Vec<(String, String)> =
             attempts.iter().take(SCREENED).map(|a| (a.name.clone(), a.place.clone())).collect();
@@ -265,7 +283,9 @@ fn refit_best(
             if standing.follows() && now.follows() {
                 attempts[at].tell(&now.whole, &standing.whole);
             }
-            if best.as_ref().is_none_or(|b| standing.is_better(b) && !is_luxury(now, b, &standing)) {
+            let is_preferable =
+                |b: &Standing| is_luxury(now, &standing, b) || standing.is_better(b) && !is_luxury(now, b, &standing);
+            if best.as_ref().is_none_or(is_preferable) {
                 best = Some(standing);
             }
         }
@@ -276,6 +296,18 @@ fn refit_best(
 /// The order of refits, best first.
 fn by_criterion(a: &(usize, Fit), b: &(usize, Fit)) -> std::cmp::Ordering {
     criterion(&a.1).total_cmp(&criterion(&b.1))
+}
+
+/// Beside what was found already a number that is slightly off is likelier than more physics.
+fn put_corrections_first(here: &Fit, ready: &mut [(usize, Fit)]) {
+    let enough = ready.first().map_or(0.0, |r| criterion(&r.1)) + CORRECTION * brought_by(here, ready);
+    let is_correction = |r: &(usize, Fit)| {
+        let is_nominal = r.1.set.members.last().is_some_and(|(h, _)| h.tier == Tier::Nominal);
+        is_nominal && criterion(&r.1) < enough
+    };
+    if let Some(at) = ready.iter().position(is_correction).filter(|_| !here.set.members.is_empty()) {
+        ready[..=at].rotate_right(1);
+    }
 }
 
 /// The largest fall of the cost by a refit.
@@ -379,15 +411,6 @@ fn refit_promising(
             stage.work.watch.step(&format!("to the end: {title}: error {:.4}", tied.rms()));
         }
         ready.sort_by(by_criterion);
-    }
-    // Beside what was found already a number that is slightly off is likelier than more physics.
-    let enough = ready.first().map_or(0.0, |r| criterion(&r.1)) + CORRECTION * brought_by(here, &ready);
-    let is_correction = |r: &(usize, Fit)| {
-        let is_nominal = r.1.set.members.last().is_some_and(|(h, _)| h.tier == Tier::Nominal);
-        is_nominal && criterion(&r.1) < enough
-    };
-    if let Some(at) = ready.iter().position(is_correction).filter(|_| !here.set.members.is_empty()) {
-        ready[..=at].rotate_right(1);
     }
     Ok(ready)
 }

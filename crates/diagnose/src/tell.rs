@@ -276,7 +276,10 @@ fn ranking(findings: &Findings) -> Vec<Hypothesis> {
         },
         why: format!("round {}", a.round + 1),
     };
-    findings.attempts.iter().filter(|a| a.fall.is_some() || a.share > 0.01).map(of).collect()
+    let worth = |a: &&crate::search::Attempt| a.fall.is_some() || a.share > 0.01;
+    let mut all: Vec<Hypothesis> = findings.attempts.iter().filter(worth).map(of).collect();
+    all.sort_by_key(|h| h.status);
+    all
 }
 
 fn parameters(findings: &Findings) -> Vec<Parameter> {

@@ -7,8 +7,8 @@ use crate::number::digits;
 use crate::vocabulary::plain_name;
 use record::plot::escape;
 
-/// Most hypotheses shown.
-const MOST: usize = 60;
+/// Hypotheses that are shown without a click.
+const MOST: usize = 12;
 
 /// The section.
 pub(super) fn section(diagnosis: &Diagnosis, evidence: &Evidence) -> String {
@@ -22,14 +22,16 @@ pub(super) fn section(diagnosis: &Diagnosis, evidence: &Evidence) -> String {
     }
     text += "<p>Every effect of the library at every place where it could act. <i>Screen</i>: fall of the summed squared residual \
              that a linear estimate predicts, nuisance (initial states, active parameters) projected out. <i>Refit</i>: fall after a fit in \
-             full simulation. <i>Criterion</i>: that fall less what the effect's parameters would win from noise (BIC). <i>Held back</i>: gain on \
-             segments that the fit did not see. Both last must be positive. A column's head sorts by it.</p>\n";
+             full simulation. <i>Criterion</i>: that fall less what the effect's parameters would win from noise (BIC). <i>Held back</i>: fall by the \
+             whole chosen set where each run is predicted with numbers that the others give. Both last must be positive. A column's head sorts by it.</p>\n";
     let header =
         ["#", "effect", "place", "#screen", "share", "#parameters", "#refit", "#criterion", "#held back", "result"];
-    let rows: Vec<Vec<String>> = evidence.ranking.iter().take(MOST).enumerate().map(|(i, h)| row(i, h)).collect();
-    text += &table("sortable", &header, &rows);
-    if evidence.ranking.len() > MOST {
-        text += &format!("<p>{} more, all weaker, are not shown.</p>\n", evidence.ranking.len() - MOST);
+    let rows: Vec<Vec<String>> = evidence.ranking.iter().enumerate().map(|(i, h)| row(i, h)).collect();
+    let (first, more) = rows.split_at(rows.len().min(MOST));
+    text += &table("sortable", &header, first);
+    if !more.is_empty() {
+        let others = table("sortable", &header, more);
+        text += &format!("<details><summary>{} more, all weaker</summary>{others}</details>\n", more.len());
     }
     text
 }
