@@ -108,7 +108,12 @@ impl Fit {
 
     /// Whether the cost is more than noise leaves.
     pub fn is_significant(&self) -> bool {
-        self.excess() > (SIGMAS * self.spread()).max(LEAST * self.noise)
+        self.excess() > (SIGMAS * self.spread()).max(self.least())
+    }
+
+    /// Cost that the noise figures of data sheets do not vouch for.
+    pub fn least(&self) -> f64 {
+        LEAST * self.noise
     }
 
     /// Whether it leaves so much that its numbers say little.

@@ -123,7 +123,7 @@ pub fn search(
         attempts.append(&mut tried);
         let is_worthwhile = |b: &Standing| {
             let (before, after) = (now.judge(), b.judge());
-            let is_clear = before.cost - after.cost > WORTHWHILE * before.excess().max(0.0);
+            let is_clear = before.cost - after.cost > (WORTHWHILE * before.excess()).max(before.least());
             b.is_better(&now) && (is_clear || !b.is_comparable(&now))
         };
         let Some(best) = best.filter(is_worthwhile) else { break };
