@@ -34,9 +34,9 @@ pub(crate) fn when(stage: &Stage<'_>, nominal: &Fit) -> (f64, f64) {
 }
 
 /// What a place's missing force depends on, in words with the share of its variance; none where nothing stands out.
-pub(crate) fn dependence(stage: &Stage<'_>, nominal: &Fit, located: &Located, place: &str) -> Option<String> {
+pub(crate) fn dependence(features: &Features, nominal: &Fit, located: &Located, place: &str) -> Option<String> {
     let at = located.places.iter().position(|p| p.name == place)?;
-    let Dependence { name, share, .. } = find_dependence(stage, nominal, located, (at, located.strongest(at)))?;
+    let Dependence { name, share, .. } = find_dependence(features, nominal, located, (at, located.strongest(at)))?;
     (share > NAMED).then(|| format!("changes with {name} (R² {share:.2})"))
 }
 
@@ -50,14 +50,21 @@ pub(crate) struct Dependence {
     pub values: Vec<f64>,
 }
 
+/// By window: names and values of what a missing force may depend on.
+pub(crate) type Features = Vec<Vec<(String, f64)>>;
+
+/// Those of a fit's windows.
+pub(crate) fn find_features(stage: &Stage<'_>, fit: &Fit) -> Features {
+    fit.segments.iter().map(|s| features(&stage.tapes[s.run], s.span)).collect()
+}
+
 /// Looks for it among times, places, speeds and ways gone; `column` is the place and which of its numbers.
 pub(crate) fn find_dependence(
-    stage: &Stage<'_>,
+    all: &Features,
     nominal: &Fit,
     located: &Located,
     (place, column): (usize, usize),
 ) -> Option<Dependence> {
-    let all: Vec<Vec<(String, f64)>> = nominal.segments.iter().map(|s| features(&stage.tapes[s.run], s.span)).collect();
     let of = |k: usize| {
         let values: Vec<f64> = all.iter().map(|f| f.get(k).map_or(f64::NAN, |f| f.1)).collect();
         let point = |(i, windows): (usize, &Vec<WindowForce>)| {

@@ -1,6 +1,6 @@
 //! Curves of the evidence: channels that matter, and the missing force over time.
 
-use crate::condition::find_dependence;
+use crate::condition::{Features, find_dependence};
 use crate::evidence::{Curve, MissingForce, Scatter, ScatterPoint};
 use crate::judge::Scalar;
 use crate::linear::Stage;
@@ -84,6 +84,11 @@ pub(crate) fn drawn(located: &Located) -> Vec<(usize, usize)> {
     places.flat_map(steady).filter(|(p, c)| located.windows.iter().any(|w| w[*p].error[*c] > 0.0)).collect()
 }
 
+/// What a place's number acts on, by its label; empty where the place has only one.
+fn freedom_of(label: &str) -> &str {
+    label.trim_end_matches("constant").trim()
+}
+
 /// Unit of a place's number, by its label.
 fn unit_of(place: &str, label: &str) -> &'static str {
     match label {
@@ -110,7 +115,7 @@ pub(crate) fn forces(findings: &Findings, stage: &Stage<'_>) -> Vec<MissingForce
         let law = findings.left.as_ref().map(|left| (law_name(findings), of(&|i| law(located, left, i, (p, c)))));
         MissingForce {
             place: place.name.clone(),
-            freedom: label.trim_end_matches("constant").trim().to_owned(),
+            freedom: freedom_of(label).to_owned(),
             unit: unit_of(&place.name, label).to_owned(),
             run: stage.tapes[run].file.clone(),
             t: of(&|i| 0.5 * (segments[i].span.from + segments[i].span.to)),
@@ -133,10 +138,10 @@ fn law_name(findings: &Findings) -> String {
 }
 
 /// The missing forces against the quantities that explain most of them.
-pub(crate) fn scatters(findings: &Findings, stage: &Stage<'_>) -> Vec<Scatter> {
+pub(crate) fn scatters(findings: &Findings, features: &Features) -> Vec<Scatter> {
     let located = &findings.located;
     let against = |(p, c): (usize, usize)| {
-        let found = find_dependence(stage, &findings.nominal, located, (p, c))?;
+        let found = find_dependence(features, &findings.nominal, located, (p, c))?;
         if found.share < EXPLAINS {
             return None;
         }
@@ -153,7 +158,7 @@ pub(crate) fn scatters(findings: &Findings, stage: &Stage<'_>) -> Vec<Scatter> {
             along.sort_by(|a, b| a.0.total_cmp(&b.0));
             (law_name(findings), along)
         });
-        let what = label.trim_end_matches("constant").trim();
+        let what = freedom_of(label);
         let unit = unit_of(&place.name, label);
         Some(Scatter {
             place: place.name.clone(),

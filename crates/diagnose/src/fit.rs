@@ -8,7 +8,7 @@
 //! damping that has run away is not convergence, and is said.
 
 use crate::error::DiagnoseError;
-use crate::hypothesis::Hypothesis;
+use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::{Segment, SegmentLinear, Stage, Steps, Variation, sum_reduced};
 use crate::plant::{Built, Plant};
 use nalgebra::{DMatrix, DVector};
@@ -33,6 +33,11 @@ impl EffectSet {
     pub fn slots(&self) -> Vec<(usize, usize)> {
         let all = self.members.iter().enumerate().flat_map(|(m, (h, _))| (0..h.coordinates.len()).map(move |k| (m, k)));
         all.filter(|slot| !self.held.contains(slot)).collect()
+    }
+
+    /// Whether its last member corrects a nominal number.
+    pub fn ends_with_correction(&self) -> bool {
+        self.members.last().is_some_and(|(h, _)| h.tier == Tier::Nominal)
     }
 
     /// The set with one more.
@@ -116,9 +121,9 @@ impl Fit {
         LEAST * self.noise
     }
 
-    /// Whether it leaves so much that its numbers say little.
-    pub fn is_poor(&self) -> bool {
-        self.rms() > POOR
+    /// Whether any of a run is in it.
+    pub fn has_run(&self, run: usize) -> bool {
+        self.segments.iter().any(|s| s.run == run)
     }
 
     /// Root mean square of the residual, 1 for a perfect model.
@@ -127,8 +132,6 @@ impl Fit {
     }
 }
 
-/// Root mean square beyond which a fit is poor.
-const POOR: f64 = 2.0;
 /// Excess in standard deviations below which nothing is left to explain.
 const SIGMAS: f64 = 4.0;
 /// Excess per scalar that data sheets' noise figures do not vouch for.
@@ -377,14 +380,21 @@ fn step(a: &DMatrix<f64>, b: &DMatrix<f64>, damping: f64) -> DVector<f64> {
     DVector::from_fn(n, |i, _| -scale[i] * x[i])
 }
 
+/// A in coordinates that give it a diagonal of ones, zeros where nothing shows one; and their scales.
+pub(crate) fn scaled(a: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
+    let n = a.nrows();
+    let scale = DVector::from_fn(n, |i, _| if a[(i, i)] > 0.0 { 1.0 / a[(i, i)].sqrt() } else { 0.0 });
+    let scaled = DMatrix::from_fn(n, n, |i, j| 0.5 * (a[(i, j)] + a[(j, i)]) * scale[i] * scale[j]);
+    (scale, scaled)
+}
+
 /// Inverse of A in scaled coordinates; directions that the data do not show are left out.
 pub fn pseudo_inverse(a: &DMatrix<f64>) -> DMatrix<f64> {
     let n = a.nrows();
     if n == 0 {
         return DMatrix::zeros(0, 0);
     }
-    let scale = DVector::from_fn(n, |i, _| if a[(i, i)] > 0.0 { 1.0 / a[(i, i)].sqrt() } else { 0.0 });
-    let scaled = DMatrix::from_fn(n, n, |i, j| 0.5 * (a[(i, j)] + a[(j, i)]) * scale[i] * scale[j]);
+    let (scale, scaled) = scaled(a);
     let eigen = scaled.symmetric_eigen();
     let inverse = eigen.eigenvalues.map(|l| if l > 1e-9 { 1.0 / l } else { 0.0 });
     let v = &eigen.eigenvectors;

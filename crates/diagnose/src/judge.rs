@@ -124,7 +124,7 @@ impl Prediction {
     }
 
     /// Squared norm of the residual over some runs.
-    pub fn cost(&self, wanted: impl Fn(usize) -> bool) -> f64 {
+    fn cost(&self, wanted: impl Fn(usize) -> bool) -> f64 {
         self.of(&wanted).map(|r| r.norm_squared()).sum()
     }
 
@@ -156,8 +156,16 @@ impl Prediction {
 impl Judgement {
     /// Root mean square of some runs, units of noise: nominal and corrected.
     pub fn rms(&self, windowed: bool, wanted: impl Fn(usize) -> bool) -> [f64; 2] {
-        let predictions = if windowed { &self.windowed } else { &self.whole };
-        predictions.each_ref().map(|p| p.rms(&wanted))
+        self.predictions(windowed).each_ref().map(|p| p.rms(&wanted))
+    }
+
+    /// Squared norms of the residuals of some runs: nominal and corrected.
+    pub fn costs(&self, windowed: bool, wanted: impl Fn(usize) -> bool) -> [f64; 2] {
+        self.predictions(windowed).each_ref().map(|p| p.cost(&wanted))
+    }
+
+    fn predictions(&self, windowed: bool) -> &[Prediction; 2] {
+        if windowed { &self.windowed } else { &self.whole }
     }
 
     /// Root mean square over the runs of a role.

@@ -227,7 +227,7 @@ fn verdict(judgement: &Judgement, found: &Fit, follows: bool) -> Verdict {
     if !found.is_significant() {
         return if found.set.members.is_empty() { Verdict::NoMismatch } else { Verdict::Explained };
     }
-    let [before, after] = judgement.rms(!follows, |run| found.segments.iter().any(|s| s.run == run));
+    let [before, after] = judgement.rms(!follows, |run| found.has_run(run));
     let left = (after * after - 1.0) / (before * before - 1.0).max(1e-9);
     if found.set.members.is_empty() {
         Verdict::Unknown

@@ -8,7 +8,7 @@
 //! brings the memory's own start as columns that each segment eliminates: in windows that begin in mid-run it is already moving.
 
 use crate::error::DiagnoseError;
-use crate::fit::{Fit, pseudo_inverse, vary};
+use crate::fit::{Fit, pseudo_inverse, scaled, vary};
 use crate::hypothesis::{Column, Hypothesis, Scale, ScreenPoint};
 use crate::linear::{Segment, Stage, Variation, eliminate};
 use crate::plant::{Built, Plant};
@@ -89,14 +89,9 @@ fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     let probes_at = |(h, p): &(usize, usize)| probes_of(stage, plant, (fit, &pilots), (&all[*h], &all[*h].screens[*p]));
     let probes: Vec<Vec<Probe>> = points.par_iter().map(probes_at).collect();
     let products = sum_products(stage, fit, &active, &probes);
-    let scores = points.iter().zip(&probes).zip(products).filter_map(|((at, probes), k)| {
-        let hypothesis = &all[at.0];
-        score(hypothesis, &hypothesis.screens[at.1], probes, &k, (active.len(), fit.count)).map(|score| Score {
-            hypothesis: at.0,
-            point: at.1,
-            ..score
-        })
-    });
+    let counts = (active.len(), fit.count);
+    let places = points.iter().zip(&probes).zip(products);
+    let scores = places.filter_map(|((at, probes), k)| score((&all[at.0], *at), probes, k, counts));
     let mut scores: Vec<Score> = scores.collect();
     scores.sort_by(|a, b| b.score.total_cmp(&a.score));
     Ok(scores)
@@ -236,10 +231,7 @@ fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: &P
 
 /// What a point's information matrix says.
 fn find_shown(hypothesis: &Hypothesis, point: &ScreenPoint, (a, inverse): (&DMatrix<f64>, &DMatrix<f64>)) -> Shown {
-    let n = a.nrows();
-    let scale = |i: usize| if a[(i, i)] > 0.0 { a[(i, i)].sqrt().recip() } else { 0.0 };
-    let scaled = DMatrix::from_fn(n, n, |i, j| 0.5 * (a[(i, j)] + a[(j, i)]) * scale(i) * scale(j));
-    let eigenvalues = scaled.symmetric_eigenvalues();
+    let eigenvalues = scaled(a).1.symmetric_eigenvalues();
     let condition = eigenvalues.max() / eigenvalues.min().max(f64::EPSILON);
     let error = |i: usize| if inverse[(i, i)] > 0.0 { inverse[(i, i)].sqrt() } else { f64::INFINITY };
     let name = |(i, column): (usize, &Column)| {
@@ -256,19 +248,18 @@ fn find_shown(hypothesis: &Hypothesis, point: &ScreenPoint, (a, inverse): (&DMat
     Shown { errors: point.columns.iter().enumerate().map(name).collect(), condition }
 }
 
-/// Promise, rank and first coordinates of a point.
+/// What a point promises; `index` is that of the hypothesis and which of its points.
 fn score(
-    hypothesis: &Hypothesis,
-    point: &ScreenPoint,
+    (hypothesis, index): (&Hypothesis, (usize, usize)),
     probes: &[Probe],
-    k: &DMatrix<f64>,
+    mut k: DMatrix<f64>,
     (active, count): (usize, usize),
 ) -> Option<Score> {
+    let point = &hypothesis.screens[index.1];
     let n = probes.len();
     if n == 0 || n < point.columns.len() {
         return None;
     }
-    let mut k = k.clone();
     // A column that its step does not even move by a thousandth of the noise is rounding, not physics.
     let last = k.ncols() - 1;
     for (i, probe) in probes.iter().enumerate() {
@@ -288,7 +279,7 @@ fn score(
     let weights: Vec<f64> = amplitudes.iter().copied().collect();
     let start = hypothesis.start_from(point, &weights)?;
     let shown = find_shown(hypothesis, point, (&a, &inverse));
-    (score.is_finite() && rank > 0).then_some(Score { hypothesis: 0, point: 0, score, rank, start, shown })
+    (score.is_finite() && rank > 0).then_some(Score { hypothesis: index.0, point: index.1, score, rank, start, shown })
 }
 
 /// A and b of the last `n` columns with the first `active` ones projected out.

@@ -301,10 +301,7 @@ fn by_criterion(a: &(usize, Fit), b: &(usize, Fit)) -> std::cmp::Ordering {
 /// Beside what was found already a number that is slightly off is likelier than more physics.
 fn put_corrections_first(here: &Fit, ready: &mut [(usize, Fit)]) {
     let enough = ready.first().map_or(0.0, |r| criterion(&r.1)) + CORRECTION * brought_by(here, ready);
-    let is_correction = |r: &(usize, Fit)| {
-        let is_nominal = r.1.set.members.last().is_some_and(|(h, _)| h.tier == Tier::Nominal);
-        is_nominal && criterion(&r.1) < enough
-    };
+    let is_correction = |r: &(usize, Fit)| r.1.set.ends_with_correction() && criterion(&r.1) < enough;
     if let Some(at) = ready.iter().position(is_correction).filter(|_| !here.set.members.is_empty()) {
         ready[..=at].rotate_right(1);
     }
@@ -317,12 +314,11 @@ fn brought_by(here: &Fit, ready: &[(usize, Fit)]) -> f64 {
 
 /// Whether what one standing does more than another that corrects a nominal number is too little for more physics beside what was found.
 fn is_luxury(now: &Standing, plain: &Standing, other: &Standing) -> bool {
-    let is_nominal = |s: &Standing| s.judge().set.members.last().is_some_and(|(h, _)| h.tier == Tier::Nominal);
     let [plain_costs, other_costs] = [plain, other].map(|s| criterion(s.judge()));
     let brought = criterion(now.judge()) - other_costs;
     !now.judge().set.members.is_empty()
-        && is_nominal(plain)
-        && !is_nominal(other)
+        && plain.judge().set.ends_with_correction()
+        && !other.judge().set.ends_with_correction()
         && plain.is_comparable(other)
         && now.is_comparable(other)
         && plain_costs - other_costs < CORRECTION * brought

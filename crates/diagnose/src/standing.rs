@@ -149,7 +149,7 @@ impl Standing {
             false => Fit { set: set.clone(), ..self.followed(stage, plant, set.frozen(), &segments)? },
         };
         let mut standing = Self { windows, whole, rungs, reach: self.reach };
-        if !standing.follows() && !is_far && !standing.windows.is_poor() {
+        if !standing.follows() && !is_far && standing.windows.rms() <= FAIR {
             standing = standing.along_the_valley(stage, plant)?;
         }
         let set = standing.windows.set.clone();
@@ -331,6 +331,8 @@ fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) 
     fit(stage, plant, now.set, segments, effort)
 }
 
+/// Root mean square in windows up to which these tell a valley.
+const FAIR: f64 = 2.0;
 /// Distances along a valley, standard errors of what windows tell, and shares of the best of them at which it is looked at again.
 const DISTANCES: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 100.0, 300.0];
 const FINER: [f64; 6] = [0.4, 0.55, 0.75, 1.3, 1.7, 2.2];

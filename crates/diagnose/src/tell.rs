@@ -1,6 +1,6 @@
 //! From findings to the diagnosis and its evidence.
 
-use crate::condition;
+use crate::condition::{self, Features, find_features};
 use crate::diagnosis::{
     BeforeAfter, Diagnosis, Errors, FORMAT, Found, Located as LocatedPlace, Rival, Role, RunError, StdErr, Verdict,
 };
@@ -24,13 +24,14 @@ pub(crate) fn tell(
     folder: &Path,
 ) -> (Diagnosis, Evidence) {
     let effects = if findings.verdict == Verdict::Unknown { Vec::new() } else { effects(findings) };
+    let features = find_features(stage, &findings.nominal);
     let recording = folder.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let diagnosis = Diagnosis {
         format: FORMAT,
         scenario: scenario.to_owned(),
         recording,
         verdict: findings.verdict,
-        located: located(findings, stage),
+        located: located(findings, stage, &features),
         effects,
         error: errors(findings, stage),
         remarks: inspection
@@ -48,7 +49,7 @@ pub(crate) fn tell(
         heat: heat(findings, stage),
         curves: crate::curves::curves(findings, stage),
         forces: crate::curves::forces(findings, stage),
-        scatters: crate::curves::scatters(findings, stage),
+        scatters: crate::curves::scatters(findings, &features),
         identifiability: identifiability(findings),
         detection: crate::detect::detection(stage, &findings.judgement),
         whiteness: crate::detect::whiteness(findings, stage),
@@ -139,11 +140,11 @@ fn rivals(findings: &Findings, chosen: &crate::hypothesis::Hypothesis) -> Vec<Ri
     near.map(|(a, gap)| Rival { name: a.name.clone(), place: a.place.clone(), score_gap: gap }).collect()
 }
 
-fn located(findings: &Findings, stage: &Stage<'_>) -> Vec<LocatedPlace> {
+fn located(findings: &Findings, stage: &Stage<'_>, features: &Features) -> Vec<LocatedPlace> {
     let (from_s, to_s) = condition::when(stage, &findings.nominal);
     let place = |name: String, share: f64, condition: &str| {
         let is_unknown = findings.verdict == Verdict::Unknown;
-        let depends = is_unknown.then(|| condition::dependence(stage, &findings.nominal, &findings.located, &name));
+        let depends = is_unknown.then(|| condition::dependence(features, &findings.nominal, &findings.located, &name));
         let depends = depends.flatten();
         let condition = depends.map_or_else(|| condition.to_owned(), |on| format!("{condition}; {on}"));
         LocatedPlace { place: name, share, from_s, to_s, condition }
@@ -214,7 +215,7 @@ pub(crate) fn role(role: record::Role) -> Role {
     }
 }
 
-/// What the first screen's information matrices say, best shown first.
+/// What the first screen's information matrices say, the most promising first.
 fn identifiability(findings: &Findings) -> Vec<Identifiable> {
     let first = findings.attempts.iter().filter(|a| a.round == 0);
     let of = |a: &crate::search::Attempt| {
@@ -239,9 +240,7 @@ fn identifiability(findings: &Findings) -> Vec<Identifiable> {
 
 /// Fall of the cost by the whole set over the runs that were fitted, in windows where these judge.
 fn fall_of(findings: &Findings) -> f64 {
-    let judged = if findings.follows { &findings.judgement.whole } else { &findings.judgement.windowed };
-    let is_fitted = |run: usize| findings.found.segments.iter().any(|s| s.run == run);
-    let [before, after] = judged.each_ref().map(|p| p.cost(is_fitted));
+    let [before, after] = findings.judgement.costs(!findings.follows, |run| findings.found.has_run(run));
     before - after
 }
 
@@ -253,10 +252,8 @@ fn nan_unless_finite(x: f64) -> f64 {
 const RIDGE: f64 = 1e4;
 
 fn ranking(findings: &Findings) -> Vec<Hypothesis> {
-    let is_rival = |a: &crate::search::Attempt| {
-        let same = |r: &Rival| r.name == a.name && r.place == a.place;
-        findings.found.set.members.iter().any(|(h, _)| rivals(findings, h).iter().any(same))
-    };
+    let near: Vec<Rival> = findings.found.set.members.iter().flat_map(|(h, _)| rivals(findings, h)).collect();
+    let is_rival = |a: &crate::search::Attempt| near.iter().any(|r| r.name == a.name && r.place == a.place);
     let held_back = nan_unless_finite(fall_of(findings) - findings.uncertainty.optimism);
     let nan = |x: Option<f64>| x.map_or(f64::NAN, nan_unless_finite);
     let of = |a: &crate::search::Attempt| Hypothesis {

@@ -93,13 +93,22 @@ fn firings() -> RecordingSet {
         }
         series
     };
-    let mut noise = Vec::new();
-    for body in ["chaser", "target"] {
-        noise.extend([(body, "position", 2e-4), (body, "orientation", 5e-4), (body, "angular_velocity", 1e-3)]);
-    }
-    let noise: Vec<(String, f64)> = noise.iter().map(|(b, q, s)| (format!("body.{b}.{q}"), *s)).collect();
-    let noise: Vec<(&str, f64)> = noise.iter().map(|(channel, sigma)| (channel.as_str(), *sigma)).collect();
+    let noise = [
+        ("body.chaser.position", 2e-4),
+        ("body.target.position", 2e-4),
+        ("body.chaser.orientation", 5e-4),
+        ("body.target.orientation", 5e-4),
+        ("body.chaser.angular_velocity", 1e-3),
+        ("body.target.angular_velocity", 1e-3),
+    ];
     set("air-table", &noise, (0..3).map(run).collect())
+}
+
+/// A rig tells what was planted in it, and a number of that.
+fn check_on(rig: &str, like: &RecordingSet, (planted, (key, value)): &(Effect, (&str, f64))) {
+    let diagnosis = diagnosed(rig, like, planted, 7);
+    check(&diagnosis, planted);
+    check_number(&diagnosis, key, *value);
 }
 
 #[test]
@@ -110,11 +119,7 @@ fn laws_of_a_contact() {
         (effect("friction-viscous", plate, &[("b", number(9.0))]), ("b", 9.0)),
         (effect("friction-stribeck", plate, &stribeck), ("mu_d", 0.24)),
     ];
-    for (planted, (key, value)) in cases {
-        let diagnosis = diagnosed("stick-slip", &pulls(), &planted, 7);
-        check(&diagnosis, &planted);
-        check_number(&diagnosis, key, value);
-    }
+    cases.iter().for_each(|case| check_on("stick-slip", &pulls(), case));
 }
 
 #[test]
@@ -124,11 +129,7 @@ fn faults_of_thrusters() {
         (effect("actuator-misalignment", "actuator:thruster_6", &[("angle_z", number(0.2))]), ("angle_z", 0.2)),
         (effect("linear-drag", "body:chaser", &[("c", number(1.0))]), ("c", 1.0)),
     ];
-    for (planted, (key, value)) in cases {
-        let diagnosis = diagnosed("air-table", &firings(), &planted, 7);
-        check(&diagnosis, &planted);
-        check_number(&diagnosis, key, value);
-    }
+    cases.iter().for_each(|case| check_on("air-table", &firings(), case));
 }
 
 /// Sliders whose card states the mass wrong by 0.3 to 1 %, otherwise as modelled.

@@ -1,8 +1,10 @@
 //! The four cases.
 
 use super::{Noise, Sample, common, curve, found, heat, located, ranking, whiteness};
-use diagnose::diagnosis::{Diagnosis, Role, Verdict};
-use diagnose::evidence::{Detection, Discretisation, Evidence, MissingForce, Parameter, Scatter, ScatterPoint, Status};
+use diagnose::diagnosis::{Diagnosis, Found, Role, Verdict};
+use diagnose::evidence::{
+    Curve, Detection, Discretisation, Evidence, Hypothesis, MissingForce, Parameter, Scatter, ScatterPoint, Status,
+};
 
 const RUNS: [(&str, Role); 3] = [("run-01.csv", Role::Fit), ("run-02.csv", Role::Fit), ("run-04.csv", Role::Holdout)];
 
@@ -61,6 +63,52 @@ fn force(
     }
 }
 
+/// What the joint and one that it moves were measured to do.
+fn joint_curves() -> Vec<Curve> {
+    let mut curves = Vec::new();
+    for (k, run) in [(3, RUNS[0]), (3, RUNS[2]), (5, RUNS[0])] {
+        let drift = move |t: f64| 0.004 * t.powi(3) * (1.0 + 0.2 * (2.0 * t).sin()) / f64::from(k * k - 8);
+        let position = format!("joint.joint_{k}.position");
+        let velocity = format!("joint.joint_{k}.velocity");
+        curves.push(curve((&position, "rad", 2e-5), run, (12.0, 500.0), |t| 0.6 * (1.1 * t).sin(), drift));
+        curves.push(curve(
+            (&velocity, "rad/s", 1e-3),
+            run,
+            (12.0, 500.0),
+            |t| 0.66 * (1.1 * t).cos(),
+            move |t| 0.3 * drift(t),
+        ));
+    }
+    curves
+}
+
+/// What else was thought of at the joint.
+fn joint_ranking(place: &str) -> Vec<Hypothesis> {
+    ranking(&[
+        (
+            "joint-viscous-friction",
+            place,
+            8.31e5,
+            0.94,
+            8.27e5,
+            Status::Chosen,
+            "best by the criterion and on held-back segments",
+        ),
+        (
+            "joint-coulomb-friction",
+            place,
+            7.02e5,
+            0.79,
+            7.4e5,
+            Status::Rejected,
+            "leaves a mismatch that grows with speed",
+        ),
+        ("joint-stribeck-friction", place, 7.9e5, 0.89, 8.27e5, Status::Rival, "its extra parameters gain nothing"),
+        ("actuator-gain", place, 3.2e5, 0.36, f64::NAN, Status::Screened, ""),
+        ("joint-armature", "joint:joint_5", 4.1e3, 0.004, f64::NAN, Status::Screened, ""),
+    ])
+}
+
 /// Viscous friction in joint 3 of an arm; two channels of fourteen show most of it.
 pub fn joint() -> (Diagnosis, Evidence) {
     let sample = Sample {
@@ -102,19 +150,7 @@ pub fn joint() -> (Diagnosis, Evidence) {
         ],
         ..Evidence::default()
     };
-    for (k, run) in [(3, RUNS[0]), (3, RUNS[2]), (5, RUNS[0])] {
-        let drift = move |t: f64| 0.004 * t.powi(3) * (1.0 + 0.2 * (2.0 * t).sin()) / f64::from(k * k - 8);
-        let position = format!("joint.joint_{k}.position");
-        let velocity = format!("joint.joint_{k}.velocity");
-        evidence.curves.push(curve((&position, "rad", 2e-5), run, (12.0, 500.0), |t| 0.6 * (1.1 * t).sin(), drift));
-        evidence.curves.push(curve(
-            (&velocity, "rad/s", 1e-3),
-            run,
-            (12.0, 500.0),
-            |t| 0.66 * (1.1 * t).cos(),
-            move |t| 0.3 * drift(t),
-        ));
-    }
+    evidence.curves = joint_curves();
     let mut torque =
         force(place, ("torque about the joint's axis", "N m"), 12.0, |t| -0.9 * 0.66 * (1.1 * t).cos(), 0.03);
     torque.law = torque.law.map(|(_, values)| ("−b q̇, b = 0.901".to_owned(), values));
@@ -122,29 +158,7 @@ pub fn joint() -> (Diagnosis, Evidence) {
     let mut against = scatter("joint velocity, rad/s", "missing torque, N m", |v| -0.9 * v, (-0.7, 0.7, 0.03));
     against.place = place.to_owned();
     evidence.scatters = vec![against];
-    evidence.ranking = ranking(&[
-        (
-            "joint-viscous-friction",
-            place,
-            8.31e5,
-            0.94,
-            8.27e5,
-            Status::Chosen,
-            "best by the criterion and on held-back segments",
-        ),
-        (
-            "joint-coulomb-friction",
-            place,
-            7.02e5,
-            0.79,
-            7.4e5,
-            Status::Rejected,
-            "leaves a mismatch that grows with speed",
-        ),
-        ("joint-stribeck-friction", place, 7.9e5, 0.89, 8.27e5, Status::Rival, "its extra parameters gain nothing"),
-        ("actuator-gain", place, 3.2e5, 0.36, f64::NAN, Status::Screened, ""),
-        ("joint-armature", "joint:joint_5", 4.1e3, 0.004, f64::NAN, Status::Screened, ""),
-    ]);
+    evidence.ranking = joint_ranking(place);
     evidence.parameters =
         vec![parameter(("joint-viscous-friction", place), ("b", "N m s/rad"), (0.901_23, 0.001_12, 0.0))];
     (diagnosis, common(evidence, ("joint-viscous-friction", place, "b", "N m s/rad", 9e-4)))
@@ -158,89 +172,44 @@ fn impact(t: f64) -> f64 {
     through(0.45, 0.06) + 0.6 * through(0.9, 0.05) + 0.3 * through(1.6, 0.05)
 }
 
-/// A stiffer contact and a centre of mass that is off.
-pub fn contact() -> (Diagnosis, Evidence) {
-    let sample = Sample {
-        scenario: "dock-impact",
-        recording: "dock-impact-0012",
-        verdict: Verdict::Explained,
-        window_s: 0.5,
-        before: (20.98, 16.4),
-        after: (1.004, 1.003),
-    };
-    let place = "contact:probe/drogue";
+/// Mismatch of channel `k` (the chaser's three, the target's three, force and torque) at an instant.
+fn contact_mismatch(k: usize, t: f64) -> f64 {
+    match k {
+        6 | 7 => 900.0 * impact(t).powi(2),
+        _ if t <= 0.46 => 0.0,
+        2 => 60.0,
+        0 | 1 => 3.0 * (t - 0.4),
+        _ => 0.4 * (t - 0.4),
+    }
+}
+
+/// The effects that were found there.
+fn contact_effects(place: &str) -> Vec<Found> {
     let stiffness = found(
         "contact-stiffness",
         place,
         &[("k", 3.604e6, 2.1e4), ("n", 1.5004, 6e-4)],
         &[("mount-compliance", place, 7.4)],
     );
-    let com = found("body-com", "body:chaser", &[("com", 0.0, 0.0)], &[]);
-    let mut com = com;
+    let mut com = found("body-com", "body:chaser", &[("com", 0.0, 0.0)], &[]);
     let vector = diagnose::diagnosis::ParamValue::Numbers(vec![0.004_02, -0.006_01, 0.002_97]);
     com.params.insert("com".into(), vector);
     com.std_err.insert("com".into(), diagnose::diagnosis::StdErr::each(&[4e-5, 3e-5, 3e-5]));
-    let diagnosis = sample.diagnosis(
-        vec![
-            located(place, 0.83, (0.45, 1.65), "in contact"),
-            located("body:chaser", 0.21, (0.45, 4.0), "after the first touch"),
-        ],
-        vec![stiffness, com],
-    );
-    let names = [
-        "body.chaser.position",
-        "body.chaser.orientation",
-        "body.chaser.angular_velocity",
-        "body.target.position",
-        "body.target.orientation",
-        "body.target.angular_velocity",
-        "sensor.probe.force",
-        "sensor.probe.torque",
-    ];
-    let size = |k: usize, t: f64| match k {
-        6 | 7 => 900.0 * impact(t).powi(2),
-        2 => {
-            if t > 0.46 {
-                60.0
-            } else {
-                0.0
-            }
-        }
-        0 | 1 => {
-            if t > 0.46 {
-                3.0 * (t - 0.4)
-            } else {
-                0.0
-            }
-        }
-        _ => {
-            if t > 0.46 {
-                0.4 * (t - 0.4)
-            } else {
-                0.0
-            }
-        }
-    };
-    let mut evidence = Evidence {
-        title: "Docking impact, six approaches".to_owned(),
-        discretisation: Some(Discretisation { step_s: 5e-5, window_s: 0.5, error: 0.04, bound: 0.1 }),
-        detection: detection(2210.0),
-        heat: RUNS.map(|run| heat(run, &names, (4.0, 400), size)).to_vec(),
-        whiteness: vec![
-            whiteness("sensor.probe.force.x", 0.0005, 0.004),
-            whiteness("body.chaser.angular_velocity.y", 0.004, 0.08),
-        ],
-        ..Evidence::default()
-    };
+    vec![stiffness, com]
+}
+
+/// What the impact was measured to do.
+fn contact_curves() -> Vec<Curve> {
+    let mut curves = Vec::new();
     for run in [RUNS[0], RUNS[2]] {
-        evidence.curves.push(curve(
+        curves.push(curve(
             ("sensor.probe.force.x", "N", 0.5),
             run,
             (4.0, 2000.0),
             |t| -180.0 * impact(t),
             |t| 22.0 * impact(t + 0.004),
         ));
-        evidence.curves.push(curve(
+        curves.push(curve(
             ("body.chaser.angular_velocity.y", "rad/s", 1e-4),
             run,
             (4.0, 250.0),
@@ -248,13 +217,12 @@ pub fn contact() -> (Diagnosis, Evidence) {
             |t| if t > 0.48 { 8e-4 } else { 0.0 },
         ));
     }
-    let mut missing = force(place, ("normal force", "N"), 4.0, |t| 22.0 * impact(t), 0.8);
-    missing.law = missing.law.map(|(_, values)| ("Δk dⁿ".to_owned(), values));
-    evidence.forces = vec![missing];
-    let mut against = scatter("depth, m", "missing normal force, N", |d| 6.0e5 * d.powf(1.5), (0.0, 1.1e-3, 0.7));
-    against.place = place.to_owned();
-    evidence.scatters = vec![against];
-    evidence.ranking = ranking(&[
+    curves
+}
+
+/// What else was thought of.
+fn contact_ranking(place: &str) -> Vec<Hypothesis> {
+    ranking(&[
         ("contact-stiffness", place, 3.1e6, 0.83, 3.4e6, Status::Chosen, ""),
         (
             "mount-compliance",
@@ -268,7 +236,56 @@ pub fn contact() -> (Diagnosis, Evidence) {
         ("body-com", "body:chaser", 2.6e5, 0.21, 2.5e5, Status::Chosen, ""),
         ("friction-coefficient", place, 9.0e4, 0.02, 1.2e2, Status::Rejected, "no gain on held-back runs"),
         ("sensor-scale", "sensor:sensor.probe.force", 7.7e4, 0.02, f64::NAN, Status::Screened, ""),
-    ]);
+    ])
+}
+
+/// A stiffer contact and a centre of mass that is off.
+pub fn contact() -> (Diagnosis, Evidence) {
+    let sample = Sample {
+        scenario: "dock-impact",
+        recording: "dock-impact-0012",
+        verdict: Verdict::Explained,
+        window_s: 0.5,
+        before: (20.98, 16.4),
+        after: (1.004, 1.003),
+    };
+    let place = "contact:probe/drogue";
+    let diagnosis = sample.diagnosis(
+        vec![
+            located(place, 0.83, (0.45, 1.65), "in contact"),
+            located("body:chaser", 0.21, (0.45, 4.0), "after the first touch"),
+        ],
+        contact_effects(place),
+    );
+    let names = [
+        "body.chaser.position",
+        "body.chaser.orientation",
+        "body.chaser.angular_velocity",
+        "body.target.position",
+        "body.target.orientation",
+        "body.target.angular_velocity",
+        "sensor.probe.force",
+        "sensor.probe.torque",
+    ];
+    let mut evidence = Evidence {
+        title: "Docking impact, six approaches".to_owned(),
+        discretisation: Some(Discretisation { step_s: 5e-5, window_s: 0.5, error: 0.04, bound: 0.1 }),
+        detection: detection(2210.0),
+        heat: RUNS.map(|run| heat(run, &names, (4.0, 400), contact_mismatch)).to_vec(),
+        whiteness: vec![
+            whiteness("sensor.probe.force.x", 0.0005, 0.004),
+            whiteness("body.chaser.angular_velocity.y", 0.004, 0.08),
+        ],
+        ..Evidence::default()
+    };
+    evidence.curves = contact_curves();
+    let mut missing = force(place, ("normal force", "N"), 4.0, |t| 22.0 * impact(t), 0.8);
+    missing.law = missing.law.map(|(_, values)| ("Δk dⁿ".to_owned(), values));
+    evidence.forces = vec![missing];
+    let mut against = scatter("depth, m", "missing normal force, N", |d| 6.0e5 * d.powf(1.5), (0.0, 1.1e-3, 0.7));
+    against.place = place.to_owned();
+    evidence.scatters = vec![against];
+    evidence.ranking = contact_ranking(place);
     evidence.parameters = vec![
         parameter(("contact-stiffness", place), ("k", "N/mⁿ"), (3.604e6, 2.1e4, 3.0e6)),
         parameter(("contact-stiffness", place), ("n", ""), (1.5004, 6e-4, 1.5)),
