@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// The one total order.
 const ORDER: [&str; 9] =
-    ["spatial", "friction", "contact", "multibody", "sim", "record", "lab", "scenario", "diagnose"];
+    ["spatial", "friction", "contact", "multibody", "sim", "record", "lab", "scenario", "campaign", "diagnose"];
 
 /// The wall.
 const LONGEST_FILE: usize = 600;

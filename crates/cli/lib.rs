@@ -1,7 +1,7 @@
 //! softdock: spacecraft docking and grasp scenarios with bristle friction.
 //!
 //! The layers, each usable by itself: [`spatial`] < [`friction`] < [`contact`] < [`multibody`] < [`sim`] < [`record`] <
-//! [`lab`] < [`scenario`] < [`diagnose`].
+//! [`lab`] < [`scenario`] < [`campaign`] < [`diagnose`].
 //!
 //! ```no_run
 //! use softdock::{scenario, sim};
@@ -15,4 +15,4 @@
 //! # Ok::<(), scenario::ScenarioErrors>(())
 //! ```
 
-pub use {contact, diagnose, friction, lab, multibody, record, scenario, sim, spatial};
+pub use {campaign, contact, diagnose, friction, lab, multibody, record, scenario, sim, spatial};

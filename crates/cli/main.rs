@@ -4,14 +4,20 @@
 
 #![allow(clippy::print_stdout)] // a command prints
 
+mod campaign;
+mod campaign_report;
 mod check;
+mod compare;
 mod diagnose;
+mod emit;
 mod inspect;
 mod lab;
 mod live;
+mod merge;
 mod new;
 mod plant;
 mod progress;
+mod replay;
 mod run;
 mod schema;
 mod score;
@@ -54,6 +60,14 @@ enum Subcommands {
     View(view::Arguments),
     /// Small experiments on contact and friction, each figure beside its closed form
     Lab(lab::Arguments),
+    /// Dispersed runs in parallel: table, report, recordings of the notable ones
+    Campaign(Box<campaign::Arguments>),
+    /// Two strategies, settings or versions on the same draws: which is better, by how much, how sure
+    Compare(compare::Arguments),
+    /// Join the tables of a campaign's shards
+    Merge(merge::Arguments),
+    /// Make one run of a campaign again, bit for bit, and record it
+    Replay(replay::Arguments),
     /// Where a scenario and a recording differ, what was left out, and how much better it predicts with it
     Diagnose(diagnose::Arguments),
     /// Write the recording that a rig would make if it were the scenario, to plan a test or to try a diagnosis
@@ -84,6 +98,10 @@ fn main() -> ExitCode {
         Subcommands::New(arguments) => new::main(&arguments),
         Subcommands::View(arguments) => view::main(&arguments),
         Subcommands::Lab(arguments) => lab::main(&arguments),
+        Subcommands::Campaign(arguments) => campaign::main(&arguments),
+        Subcommands::Compare(arguments) => compare::main(&arguments),
+        Subcommands::Merge(arguments) => merge::main(&arguments),
+        Subcommands::Replay(arguments) => replay::main(&arguments),
         Subcommands::Diagnose(arguments) => diagnose::main(&arguments),
         Subcommands::Plant(arguments) => plant::main(&arguments),
         Subcommands::Score(arguments) => score::main(&arguments),

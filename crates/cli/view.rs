@@ -1,8 +1,9 @@
 //! `softdock view FILE`: a URDF, or a scenario at t = 0, as a recording for the viewer.
 
-use crate::{Status, run};
+use crate::Status;
 use softdock::multibody::{SearchPaths, load_urdf};
 use softdock::record::{Log, Meta, OutputFolder, Recorder, Sample, Scene, SceneVehicle};
+use softdock::scenario::recording;
 use softdock::sim::Observer;
 use softdock::{multibody, scenario};
 use std::path::{Path, PathBuf};
@@ -59,8 +60,8 @@ fn write(_: &OutputFolder, _: &Log, _: &Scene, _: &str) -> anyhow::Result<()> {
 
 fn start_of_scenario(arguments: &Arguments) -> anyhow::Result<(Log, Scene)> {
     let mission = scenario::build(&scenario::load(&arguments.file, &arguments.set)?)?;
-    let scene = run::scene(&mission);
-    let plan = run::recorder_plan(&mission, &scene);
+    let scene = recording::scene(&mission);
+    let plan = recording::recorder_plan(&mission, &scene);
     let mut recorder = Recorder::new(&mission.world, plan, None);
     recorder.observe(&mission.world);
     if let Some(error) = recorder.error.take() {

@@ -23,6 +23,7 @@ mod log;
 mod mechanisms;
 mod mesh;
 mod observe;
+pub mod page;
 mod parquet_file;
 pub mod plot;
 mod recording;

@@ -11,6 +11,7 @@ mod load;
 pub mod measure;
 pub mod outcome;
 mod overrides;
+pub mod recording;
 mod schema;
 pub mod spec;
 mod spelling;

@@ -105,6 +105,14 @@ impl Scenario {
         Ok(found.into_iter().map(|(path, node)| (path, node.to_toml())).collect())
     }
 
+    /// The scenario with numbers put at paths and another seed, checked as a whole again: a run of a campaign.
+    pub fn with_numbers(&self, numbers: &[(&str, f64)], seed: u64) -> Result<Self, ScenarioErrors> {
+        let mut overrides = self.source.overrides.clone();
+        overrides.extend(numbers.iter().map(|(path, value)| format!("{path}={value:?}")));
+        overrides.push(format!("seed={seed}"));
+        parse(&self.source.text, &self.source.file, &overrides)
+    }
+
     /// Where a value was written: the nearest place in the file, or the override that set it.
     ///
     /// `path` is as for `--set`. Of a path that the file leaves out, the innermost table that is there is given.

@@ -1,10 +1,10 @@
 //! Measured, nominal and corrected curves, and what is left of them in units of noise.
 
-use super::panel::{Layer, Panel};
 use super::{figure, legend};
 use crate::diagnosis::Diagnosis;
 use crate::evidence::{Curve, Evidence};
 use crate::number::short;
+use record::page::{Layer, Panel};
 use record::plot::escape;
 
 /// Most channels drawn: the page stays below a few megabytes.
@@ -127,5 +127,6 @@ fn residuals(curve: &Curve, span: Option<(f64, f64)>) -> Panel {
         up_ends: Some((-1.4 * largest, 1.4 * largest)),
         squashed: true,
         layers,
+        ..Panel::default()
     }
 }

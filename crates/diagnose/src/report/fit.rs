@@ -1,10 +1,10 @@
 //! Parameters with intervals and correlations; errors run by run; whiteness of what is left.
 
-use super::panel::{Layer, Panel};
 use super::{figure, legend, table};
 use crate::diagnosis::{BeforeAfter, Diagnosis};
 use crate::evidence::{Evidence, Parameter, Whiteness};
 use crate::number::{noise, short, with_error};
+use record::page::{Layer, Panel};
 use record::plot::{Axis, escape};
 use std::fmt::Write;
 

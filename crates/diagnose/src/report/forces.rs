@@ -1,9 +1,9 @@
 //! The missing force over time and against what it depends on.
 
-use super::panel::{Layer, Panel};
 use super::{figure, legend};
 use crate::evidence::{Evidence, MissingForce, Scatter};
 use crate::number::percent;
+use record::page::{Layer, Panel};
 use record::plot::escape;
 
 /// Most drawings of each kind.

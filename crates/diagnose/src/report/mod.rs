@@ -7,7 +7,6 @@ mod curves;
 mod fit;
 mod forces;
 mod heat;
-mod panel;
 mod ranking;
 mod trust;
 
@@ -15,14 +14,12 @@ use crate::diagnosis::{Diagnosis, Verdict};
 use crate::evidence::Evidence;
 use crate::number::{noise, percent};
 use crate::words::{headline, paragraph, parameter_words, place_words, when_words};
+use record::page::{SCRIPT, STYLE};
 use record::plot::escape;
 use std::fmt::Write;
 
 /// Name of the file.
 pub const FILE: &str = "report.html";
-
-const STYLE: &str = include_str!("style.css");
-const SCRIPT: &str = include_str!("sort.js");
 
 /// The page.
 pub fn report_html(diagnosis: &Diagnosis, evidence: &Evidence) -> String {

@@ -32,6 +32,14 @@ impl Axis {
         Self { low, high, logarithmic: false, pixels }
     }
 
+    /// A logarithmic axis from `low` to `high` exactly; linear where they have no logarithms.
+    pub fn between_logarithms(low: f64, high: f64, pixels: (f64, f64)) -> Self {
+        if !(low > 0.0 && high > low) {
+            return Self::between(low, high, pixels);
+        }
+        Self { low: low.log10(), high: high.log10(), logarithmic: true, pixels }
+    }
+
     /// Whether a value has a place on it.
     pub fn shows(&self, value: f64) -> bool {
         value.is_finite() && (!self.logarithmic || value > 0.0)
@@ -39,7 +47,12 @@ impl Axis {
 
     /// Pixel of a value.
     pub fn at(&self, value: f64) -> f64 {
-        let place = if self.logarithmic { value.log10() } else { value };
+        // What has no logarithm lies at the lower end.
+        let place = match self.logarithmic {
+            true if value > 0.0 => value.log10(),
+            true => self.low,
+            false => value,
+        };
         self.pixels.0 + (place - self.low) / (self.high - self.low) * (self.pixels.1 - self.pixels.0)
     }
 

@@ -3,6 +3,7 @@
 //! Every name is resolved here; what cannot be built is told all at once, each fault with its line in the file.
 
 mod actuators;
+mod approach;
 mod beds;
 mod docking;
 mod drives;
@@ -110,6 +111,7 @@ fn finish(
     mut faults: Faults<'_>,
 ) -> Result<Mission, ScenarioErrors> {
     check_sensors(scenario, model, &mut faults);
+    approach::check_docking(scenario, model, &mut faults);
     let world = mechanisms::settle(scenario, start::world(scenario, model, table, &mut faults));
     let controller = strategy::build(scenario, model, table, &mut faults);
     match controller {

@@ -127,14 +127,20 @@ pub(super) fn place_of(
 
 /// A rule that names nothing is a slip of the pen.
 fn check_rules(scenario: &Scenario, shapes: &[Named], faults: &mut Faults<'_>) {
-    for (i, rule) in scenario.contacts.iter().enumerate() {
-        for (k, pattern) in rule.between.iter().enumerate() {
-            let all = || shapes.iter().flat_map(|s| s.names.iter().map(String::as_str));
-            if !all().any(|name| crate::glob_matches(pattern, name)) {
-                let valid: Vec<&str> = all().collect();
-                faults.unknown(&format!("contact[{i}].between[{k}]"), "shape or link", pattern, valid);
-            }
+    let mut check = |key: String, pattern: &str| {
+        let all = || shapes.iter().flat_map(|s| s.names.iter().map(String::as_str));
+        if !all().any(|name| crate::glob_matches(pattern, name)) {
+            let valid: Vec<&str> = all().collect();
+            faults.unknown(&key, "shape or link", pattern, valid);
         }
+    };
+    for (i, rule) in scenario.keep_out.iter().enumerate() {
+        rule.between.iter().enumerate().for_each(|(k, p)| check(format!("keep_out[{i}].between[{k}]"), p));
+    }
+    for (i, rule) in scenario.contacts.iter().enumerate() {
+        rule.between.iter().enumerate().for_each(|(k, p)| check(format!("contact[{i}].between[{k}]"), p));
+    }
+    for (i, rule) in scenario.contacts.iter().enumerate() {
         if let Some(grain) = &rule.grain
             && !rule
                 .between

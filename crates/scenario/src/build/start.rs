@@ -1,6 +1,7 @@
 //! The state at t = 0: poses, joint positions, inverse kinematics, twists.
 
 use super::actuators::ActuatorTable;
+use super::approach;
 use super::faults::Faults;
 use super::kinematics::solve_pose;
 use crate::spec::{EndEffectorPose, Scenario};
@@ -20,13 +21,17 @@ pub(super) fn world(scenario: &Scenario, model: &Arc<Model>, table: &ActuatorTab
         state.v[*coordinate] = *speed;
     }
     let mut world = World::new(Arc::clone(model), state);
+    approach::place(scenario, &mut world, faults);
     for (v, vehicle) in scenario.vehicles.iter().enumerate() {
         if let Some(wish) = &vehicle.end_effector_pose {
             reach(&mut world, v, wish, faults);
         }
     }
-    let twists: Vec<Twist> =
-        scenario.vehicles.iter().enumerate().map(|(v, s)| s.twist.twist_wb_w(&world.state().bases[v])).collect();
+    let mut twists: Vec<Twist> = Vec::with_capacity(scenario.vehicles.len());
+    for (v, vehicle) in scenario.vehicles.iter().enumerate() {
+        let approaching = approach::twist_of(scenario, &world, v, &twists);
+        twists.push(approaching.unwrap_or_else(|| vehicle.twist.twist_wb_w(&world.state().bases[v])));
+    }
     world.set_base_twists(&twists);
     hold_positions(&mut world);
     world

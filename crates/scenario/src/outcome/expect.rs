@@ -25,7 +25,7 @@ fn check(expect: &Expect, outcome: &Outcome) -> Verdict {
         name => outcome.metric(name).cloned(),
     };
     let Some(value) = value else {
-        let names: Vec<&str> = outcome.metrics.iter().map(|m| m.name).collect();
+        let names: Vec<&str> = outcome.metrics.iter().map(|m| m.name.as_ref()).collect();
         let text = format!("no metric \"{}\"{}", expect.metric, hint_for_name(&expect.metric, names));
         return Verdict { met: false, text };
     };

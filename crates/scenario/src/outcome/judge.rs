@@ -1,11 +1,15 @@
 //! Watches a run step by step and says at its end what became of it.
 
+use super::base::BaseWatch;
 use super::capture::CaptureWatch;
+use super::contacts::ContactWatch;
 use super::creep::CreepGauge;
+use super::docking::DockingWatch;
+use super::keep_out::KeepOutWatch;
 use super::mechanisms::MechanismWatch;
 use super::{Metric, Outcome};
 use crate::build::Mission;
-use crate::spec::Strategy;
+use crate::spec::{Scenario, Strategy};
 use record::{Event, EventKind};
 use serde_json::Value;
 use sim::{Energy, Flow, MomentumAudit, Observer, StepError, World};
@@ -14,38 +18,39 @@ use sim::{Energy, Flow, MomentumAudit, Observer, StepError, World};
 const AUDIT_EVERY: u64 = 100;
 
 /// The observer that every run has.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Judge {
     capture: Option<CaptureWatch>,
+    docking: Option<DockingWatch>,
+    host: Option<BaseWatch>,
+    contacts: ContactWatch,
+    keep_out: Option<KeepOutWatch>,
     creep: CreepGauge,
     mechanisms: MechanismWatch,
     audit: Option<MomentumAudit>,
     energy_start: Energy,
-    first_contact: Option<f64>,
-    peak_force: f64,
-    impulse: f64,
-    touching_steps: u64,
     events: Vec<Event>,
 }
 
 impl Judge {
     /// For a mission at its start.
     pub fn new(mission: &Mission) -> Self {
-        let world = &mission.world;
-        let capture = match &mission.scenario.strategy {
-            Strategy::TrackAndGrasp(spec) => CaptureWatch::new(spec, world.model()),
+        let (world, scenario) = (&mission.world, &mission.scenario);
+        let model = world.model();
+        let capture = match &scenario.strategy {
+            Strategy::TrackAndGrasp(spec) => CaptureWatch::new(spec, model),
             _ => None,
         };
         Self {
             capture,
+            docking: scenario.docking.as_ref().and_then(|spec| DockingWatch::new(spec, model)),
+            host: host(scenario).and_then(|name| model.vehicle(name)).map(|v| BaseWatch::new(world, v)),
+            contacts: ContactWatch::new(model),
+            keep_out: KeepOutWatch::new(&scenario.keep_out, model),
             creep: CreepGauge::new(mission.steps, world.model().step),
             mechanisms: MechanismWatch::new(world),
             audit: MomentumAudit::applies(world).then(|| MomentumAudit::new(world)),
             energy_start: Energy::of(world),
-            first_contact: None,
-            peak_force: 0.0,
-            impulse: 0.0,
-            touching_steps: 0,
             events: Vec::new(),
         }
     }
@@ -55,25 +60,13 @@ impl Judge {
         &self.events
     }
 
-    fn observe_contact(&mut self, world: &World) {
-        let (mut force, mut largest) = (0.0, 0.0_f64);
-        for touch in world.touches() {
-            force += touch.force_w.norm();
-            largest = largest.max(touch.normal_force);
-        }
-        if largest <= 0.0 {
-            return;
-        }
-        self.touching_steps += 1;
-        self.peak_force = self.peak_force.max(force);
-        self.impulse += force * world.model().step;
-        if self.first_contact.is_none() {
-            let (time, step) = (world.state().time, world.state().steps);
-            self.first_contact = Some(time);
-            let pair = world.touches().find(|t| t.normal_force > 0.0).map(|t| world.model().pair_name(t.pair));
-            let text = format!("first contact: {}", pair.unwrap_or_default());
-            self.events.push(Event { t: time, step, kind: EventKind::Contact, text });
-        }
+    /// Whether this step brought the first contact, and the sum of its contact forces, N.
+    fn observe_contact(&mut self, world: &World) -> (bool, f64) {
+        let Some(pair) = self.contacts.observe(world) else { return (false, self.contacts.force) };
+        let (time, step) = (world.state().time, world.state().steps);
+        let text = format!("first contact: {pair}");
+        self.events.push(Event { t: time, step, kind: EventKind::Contact, text });
+        (true, self.contacts.force)
     }
 
     /// What became of the run.
@@ -81,10 +74,11 @@ impl Judge {
         if let Some(audit) = &mut self.audit {
             audit.update(world);
         }
-        let (outcome, reason) = match (ended, &self.capture) {
-            (Err(error), _) => ("diverged", error.to_string()),
-            (Ok(()), Some(capture)) => capture.conclude(world),
-            (Ok(()), None) => ("completed", "the run came to its end".to_owned()),
+        let (outcome, reason) = match (ended, &self.capture, &self.docking) {
+            (Err(error), ..) => ("diverged", error.to_string()),
+            (Ok(()), Some(capture), _) => capture.conclude(world),
+            (Ok(()), None, Some(docking)) => docking.conclude(world, self.contacts.last_contact),
+            (Ok(()), None, None) => ("completed", "the run came to its end".to_owned()),
         };
         let metrics = self.calc_metrics(world, outcome);
         Outcome { outcome, reason, metrics, events: self.events }
@@ -92,7 +86,9 @@ impl Judge {
 
     fn calc_metrics(&self, world: &World, outcome: &str) -> Vec<Metric> {
         let mut metrics = Vec::new();
-        let mut add = |name, value: Value, meaning| metrics.push(Metric { name, value, meaning });
+        let mut add = |name: &'static str, value: Value, meaning| {
+            metrics.push(Metric { name: name.into(), value, meaning });
+        };
         if let Some(capture) = &self.capture {
             let (rate, speed) = capture.calc_relative_motion(world);
             add("captured", (outcome == "captured").into(), "held by friction and relative motion stopped");
@@ -107,10 +103,16 @@ impl Judge {
             add("residual_rate_deg_per_s", rate.to_degrees().into(), "angular rate between the two buses at the end");
             add("residual_speed_m_per_s", speed.into(), "speed between tool and grapple frame at the end");
         }
-        add("first_contact_s", optional(self.first_contact), "time of the first contact");
-        add("peak_contact_force_n", self.peak_force.into(), "largest sum of contact forces in a step");
-        add("contact_impulse_n_s", self.impulse.into(), "sum of contact forces over time");
-        add("contact_time_s", (self.touching_steps as f64 * world.model().step).into(), "time in contact");
+        if let Some(why) = lost_because(outcome, self.capture.as_ref()) {
+            add("lost_because", why.into(), "class of the failure");
+        }
+        let contacts = &self.contacts;
+        add("first_contact_s", optional(contacts.first_contact), "time of the first contact");
+        add("peak_contact_force_n", contacts.peak_force.into(), "largest sum of contact forces in a step");
+        add("peak_contact_force_s", optional(contacts.peak_time), "when that was");
+        add("contact_impulse_n_s", contacts.impulse.into(), "sum of contact forces over time");
+        add("contact_time_s", (contacts.touching_steps as f64 * world.model().step).into(), "time in contact");
+        add("ended_s", world.state().time.into(), "time at which the run ended");
         if let Some(creep) = self.creep.read(world) {
             add("held_points", creep.points.into(), "touching points held through the last seconds");
             add("creep_slip_m", creep.slip.into(), "slip of held points in the last seconds, less elastic deflection");
@@ -122,13 +124,25 @@ impl Judge {
             );
             add("held_rotation_rad", creep.total_rotation.into(), "rotation of the held body likewise");
         }
+        if let Some(docking) = &self.docking {
+            docking.add_metrics(world, outcome, &mut metrics);
+        }
+        if let Some(host) = &self.host {
+            host.add_metrics(&mut metrics);
+        }
+        if let Some(keep_out) = &self.keep_out {
+            keep_out.add_metrics(&mut metrics);
+        }
+        self.contacts.add_metrics(world.model(), &mut metrics);
         self.mechanisms.add_metrics(world, &mut metrics);
         self.add_accounts(world, &mut metrics);
         metrics
     }
 
     fn add_accounts(&self, world: &World, metrics: &mut Vec<Metric>) {
-        let mut add = |name, value: f64, meaning| metrics.push(Metric { name, value: value.into(), meaning });
+        let mut add = |name: &'static str, value: f64, meaning| {
+            metrics.push(Metric { name: name.into(), value: value.into(), meaning });
+        };
         if let Some(audit) = &self.audit {
             add(
                 "momentum_drift_linear",
@@ -160,8 +174,16 @@ fn optional(value: Option<f64>) -> Value {
 
 impl Observer for Judge {
     fn observe(&mut self, world: &World) -> Flow {
-        if world.state().steps > 0 {
-            self.observe_contact(world);
+        let contact = if world.state().steps > 0 { self.observe_contact(world) } else { (false, 0.0) };
+        let flow = match &mut self.docking {
+            Some(docking) => docking.observe(world, contact, &mut self.events),
+            None => Flow::Continue,
+        };
+        if let Some(host) = &mut self.host {
+            host.observe(world);
+        }
+        if let Some(keep_out) = &mut self.keep_out {
+            keep_out.observe(world, &mut self.events);
         }
         if let Some(capture) = &mut self.capture {
             capture.observe(world, &mut self.events);
@@ -173,6 +195,28 @@ impl Observer for Judge {
         {
             audit.update(world);
         }
-        Flow::Continue
+        flow
     }
+}
+
+/// The vehicle whose base is disturbed: the servicer, or the one that is docked to.
+fn host(scenario: &Scenario) -> Option<&str> {
+    match (&scenario.strategy, &scenario.docking) {
+        (Strategy::TrackAndGrasp(spec), _) => Some(&spec.servicer),
+        (_, Some(docking)) => docking.port.split('/').next(),
+        _ => None,
+    }
+}
+
+/// Class of a failure: slipped, bounced, missed, jammed, overload, released or time-out; `None` where nothing failed.
+fn lost_because(outcome: &str, capture: Option<&CaptureWatch>) -> Option<&'static str> {
+    if capture.is_some() {
+        return match outcome {
+            "lost" => Some("slipped"),
+            "not-reached" => Some("missed"),
+            "not-finished" | "not-stopped" => Some("time-out"),
+            _ => None,
+        };
+    }
+    ["bounced", "missed", "jammed", "overload", "released", "time-out"].into_iter().find(|o| *o == outcome)
 }

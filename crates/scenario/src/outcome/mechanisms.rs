@@ -59,7 +59,9 @@ impl MechanismWatch {
         if world.model().mechanisms.is_empty() {
             return;
         }
-        let mut add = |name, value: Value, meaning| metrics.push(Metric { name, value, meaning });
+        let mut add = |name: &'static str, value: Value, meaning| {
+            metrics.push(Metric { name: name.into(), value, meaning });
+        };
         let is_latch = |i: usize| matches!(world.model().mechanisms[i].kind, MechanismKind::Latch(_));
         let holding = world.mechanisms().filter(|m| is_latch(m.index) && m.status == MechanismStatus::Engaged).count();
         let travel = self.travel.iter().map(|[low, high]| high - low).fold(0.0, f64::max);

@@ -1,22 +1,28 @@
 //! What became of a run: outcome, reason, metrics, events, and the file's expectations.
 
+mod base;
 mod capture;
+mod contacts;
 mod creep;
+mod docking;
 mod expect;
 mod judge;
+mod keep_out;
 mod mechanisms;
 
+pub(crate) use docking::calc_base_motion;
 pub use expect::{Verdict, check_expectations};
 pub use judge::Judge;
 
 use record::Event;
 use serde_json::{Map, Value};
+use std::borrow::Cow;
 
 /// One figure of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metric {
     /// Its name in `summary.json` and in `[[expect]]`; a figure's name ends in its unit.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// A flag, number or text.
     pub value: Value,
     /// What it is, for people.
@@ -26,7 +32,7 @@ pub struct Metric {
 /// What became of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// `captured`, `lost`, `not-reached`, `completed`, `diverged`.
+    /// `captured`, `lost`, `not-reached`, …; of a docking as [`crate::spec::Docking`] lists them; `completed`, `diverged`.
     pub outcome: &'static str,
     /// Why, in a sentence.
     pub reason: String,
@@ -44,6 +50,6 @@ impl Outcome {
 
     /// The metrics as JSON.
     pub fn metrics_json(&self) -> Map<String, Value> {
-        self.metrics.iter().map(|m| (m.name.to_owned(), m.value.clone())).collect()
+        self.metrics.iter().map(|m| (m.name.to_string(), m.value.clone())).collect()
     }
 }

@@ -12,6 +12,7 @@
 mod actuator;
 mod campaign;
 mod contact;
+mod docking;
 mod effect;
 mod friction;
 mod mechanism;
@@ -22,8 +23,11 @@ mod strategy;
 mod vehicle;
 
 pub use actuator::{Actuator, ActuatorKind, Drive, DriveAxis, DriveMotion, JointDrive};
-pub use campaign::{Campaign, Disperse, Expect, Normal, Scalar, Uniform};
+pub use campaign::{
+    Ball, Campaign, CampaignExpect, Correlate, Directions, Disperse, Expect, Normal, Sampling, Scalar, Sweep, Uniform,
+};
 pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw, Pivot, PointRule};
+pub use docking::{Approach, Docking, KeepOut};
 pub use effect::{Effect, ParamValue};
 pub use friction::{BristleFriction, Dahl, ElastoPlastic, FrictionLaw, LuGre, RegularisedCoulomb};
 pub use mechanism::{
@@ -32,7 +36,7 @@ pub use mechanism::{
 pub use pose::{PoseSpec, TwistSpec};
 pub use sensor::{MechanismEnd, Sensor, SensorKind};
 pub use shape::{Shape, ShapeKind};
-pub use strategy::{Command, OneOrMany, Replay, Schedule, Strategy, TrackAndGrasp};
+pub use strategy::{Command, OneOrMany, Replay, Schedule, SoftDock, Strategy, TrackAndGrasp};
 pub use vehicle::{Base, BaseAxis, BaseKind, EndEffectorPose, JointStart, PartialBase, Vehicle};
 
 use crate::document::Source;
@@ -94,6 +98,12 @@ pub struct Scenario {
     /// Physics beyond the nominal model.
     #[serde(default, rename = "effect", skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<Effect>,
+    /// What counts as docked; metrics and the outcome of a docking come with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub docking: Option<Docking>,
+    /// Shapes that must stay apart.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub keep_out: Vec<KeepOut>,
     /// What a regression run must show.
     #[serde(default, rename = "expect", skip_serializing_if = "Vec::is_empty")]
     pub expects: Vec<Expect>,

@@ -17,6 +17,8 @@ pub enum Strategy {
     Schedule(Schedule),
     /// Recorded commands.
     Replay(Replay),
+    /// Waits for a soft capture to come to rest, then lets a further latch draw the vehicles together.
+    SoftDock(SoftDock),
 }
 
 /// Capture of a tumbling target by an arm on a free-flying base.
@@ -165,6 +167,51 @@ impl OneOrMany {
             Self::Many(names) => names,
         }
     }
+}
+
+/// Soft capture, attenuation, then retraction to the hard dock.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SoftDock {
+    /// Vehicle that comes.
+    #[schemars(extend("x-refers" = "vehicle"))]
+    pub visitor: String,
+    /// Vehicle that it comes to.
+    #[schemars(extend("x-refers" = "vehicle"))]
+    pub host: String,
+    /// Latches that must all hold before the retraction, by name.
+    #[schemars(length(min = 1), extend("x-refers" = "mechanism"))]
+    pub capture: Vec<String>,
+    /// Actuator that keeps the retracting latch open until then (kind latch-release).
+    #[schemars(extend("x-refers" = "actuator"))]
+    pub retraction: String,
+    /// Speed of the visitor's base seen from the host below which it counts as at rest, m/s.
+    #[serde(default = "default_settled_speed")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub rest_m_per_s: f64,
+    /// Angular rate between the two below which it counts as at rest, deg/s.
+    #[serde(default = "default_settled_rate")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub rest_deg_per_s: f64,
+    /// How long it must be at rest, s.
+    #[serde(default = "default_settle_time")]
+    #[schemars(range(min = 0.0))]
+    pub settle_s: f64,
+}
+
+/// Speed at rest before a retraction, m/s.
+fn default_settled_speed() -> f64 {
+    5e-3
+}
+
+/// Rate at rest before a retraction, deg/s.
+fn default_settled_rate() -> f64 {
+    0.1
+}
+
+/// Time at rest before a retraction, s.
+fn default_settle_time() -> f64 {
+    2.0
 }
 
 /// Commands as functions of time.

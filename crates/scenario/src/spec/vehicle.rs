@@ -1,5 +1,6 @@
 //! A vehicle: a URDF, how its base is held, and where everything starts.
 
+use super::docking::Approach;
 use super::pose::{PoseSpec, TwistSpec, attitude};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -33,6 +34,9 @@ pub struct Vehicle {
     /// nearest end of their range.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub joints: BTreeMap<String, JointStart>,
+    /// Start in front of a port, instead of `pose` and `twist`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub approach: Option<Approach>,
     /// Initial arm pose by inverse kinematics, starting from `joints`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_effector_pose: Option<EndEffectorPose>,

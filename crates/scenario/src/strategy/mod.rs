@@ -4,6 +4,7 @@ mod free_floating;
 mod predict;
 mod replay;
 mod schedule;
+mod soft_dock;
 mod track_and_grasp;
 mod trajectory;
 
@@ -25,6 +26,7 @@ pub(crate) fn build(
         Strategy::None => Some(Box::new(NoControl)),
         Strategy::Schedule(spec) => Some(Box::new(schedule::build(spec, table, model, faults)?)),
         Strategy::Replay(spec) => Some(Box::new(replay::build(scenario, spec, table, model, faults)?)),
+        Strategy::SoftDock(spec) => Some(Box::new(soft_dock::build(spec, model, table, faults)?)),
         Strategy::TrackAndGrasp(spec) => Some(Box::new(track_and_grasp::build(spec, model, table, faults)?)),
     }
 }
