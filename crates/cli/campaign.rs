@@ -14,6 +14,9 @@ use std::sync::Mutex;
 pub(crate) struct Arguments {
     /// The scenario, with its [campaign]
     file: PathBuf,
+    /// Other dispersions of the scenario, by the name of the campaign's variant
+    #[arg(long)]
+    variant: Option<String>,
     /// How many runs, instead of the scenario's
     #[arg(long)]
     runs: Option<u32>,
@@ -65,8 +68,8 @@ pub(crate) struct Arguments {
 pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let mut overrides = arguments.set.clone();
     overrides.extend(arguments.seed.map(|seed| format!("seed={seed}")));
-    let plan = Plan::new(scenario::load(&arguments.file, &overrides)?, arguments.runs)?;
-    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out/campaign").join(&plan.header.scenario));
+    let plan = Plan::new(scenario::load(&arguments.file, &overrides)?, arguments.variant.as_deref(), arguments.runs)?;
+    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out/campaign").join(name_of(&plan)));
     if let (Some(scheduler), Some(shards)) = (arguments.emit, arguments.shards) {
         print!("{}", crate::emit::script(scheduler, &job(arguments, &plan, &out, shards))?);
         return Ok(Status::AsExpected);
@@ -91,6 +94,12 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     conclude(arguments, (&plan, &target, shard), &summary, threads)
 }
 
+/// Name of the default folder.
+fn name_of(plan: &Plan) -> String {
+    let variant = plan.variant.as_ref().map(|v| format!("-{v}")).unwrap_or_default();
+    format!("{}{variant}", plan.header.scenario)
+}
+
 fn job<'a>(arguments: &'a Arguments, plan: &'a Plan, out: &'a Path, shards: u64) -> crate::emit::Job<'a> {
     crate::emit::Job {
         plan,
@@ -98,6 +107,7 @@ fn job<'a>(arguments: &'a Arguments, plan: &'a Plan, out: &'a Path, shards: u64)
         out,
         set: &arguments.set,
         seed: arguments.seed,
+        variant: arguments.variant.as_deref(),
         shards,
         threads: arguments.threads,
         image: &arguments.image,

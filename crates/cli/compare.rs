@@ -26,6 +26,9 @@ pub(crate) struct Arguments {
     /// Names of the two, in the report [default: their overrides, or their folders]
     #[arg(long, num_args = 2, value_names = ["A", "B"])]
     names: Option<Vec<String>>,
+    /// Other dispersions of the scenario, by the name of the campaign's variant
+    #[arg(long)]
+    variant: Option<String>,
     /// How many runs, where scenarios are run
     #[arg(long)]
     runs: Option<u32>,
@@ -63,7 +66,7 @@ fn table(arguments: &Arguments, (path, set): (&Path, &[String]), side: &str) -> 
         }
         return Ok(campaign::read_table(path)?);
     }
-    let plan = Plan::new(scenario::load(path, set)?, arguments.runs)?;
+    let plan = Plan::new(scenario::load(path, set)?, arguments.variant.as_deref(), arguments.runs)?;
     let target = arguments.out.join(side);
     let mut folder = Folder::open(&target, &plan, Shard::WHOLE, true)?;
     let progress = Progress::new(arguments.quiet);

@@ -19,6 +19,7 @@ pub(crate) struct Job<'a> {
     pub(crate) out: &'a Path,
     pub(crate) set: &'a [String],
     pub(crate) seed: Option<u64>,
+    pub(crate) variant: Option<&'a str>,
     pub(crate) shards: u64,
     pub(crate) threads: Option<usize>,
     /// Image with `softdock` in it, and the claim of the results' volume, for Kubernetes.
@@ -90,6 +91,9 @@ fn options(job: &Job<'_>, scheduler: Scheduler, quote: fn(&str) -> String) -> St
     }
     if let Some(seed) = job.seed {
         words.extend(["--seed".to_owned(), seed.to_string()]);
+    }
+    if let Some(variant) = job.variant {
+        words.extend(["--variant".to_owned(), variant.to_owned()]);
     }
     let quoted = words.iter().map(|word| quote(word));
     match scheduler {

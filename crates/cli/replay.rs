@@ -20,6 +20,9 @@ pub(crate) struct Arguments {
     /// Overrides that the campaign was made with, with --scenario (repeatable)
     #[arg(long = "set", value_name = "PATH=VALUE", requires = "scenario")]
     set: Vec<String>,
+    /// Variant of the campaign, with --scenario
+    #[arg(long, requires = "scenario")]
+    variant: Option<String>,
     /// Folder for run.rrd, signals.parquet and summary.json [default: out/replay/NAME-RUN]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -28,7 +31,8 @@ pub(crate) struct Arguments {
 /// Makes the run again and says by the status whether it is the same.
 pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let table = campaign::read_table(&arguments.table)?;
-    let plan = Plan::new(load(arguments)?, Some(1))?;
+    let (scenario, variant) = load(arguments)?;
+    let plan = Plan::new(scenario, variant.as_deref(), Some(1))?;
     let replayed = campaign::replay(&plan, (&arguments.table, &table), arguments.run)?;
     let row = &replayed.finished.row;
     let name = format!("{}-{:06}", table.header.scenario, arguments.run);
@@ -79,9 +83,9 @@ pub(crate) fn write_rrd(plan: &Plan, path: &Path, (row, log): (&campaign::Row, &
 }
 
 /// The scenario as the campaign had it.
-fn load(arguments: &Arguments) -> anyhow::Result<scenario::Scenario> {
+fn load(arguments: &Arguments) -> anyhow::Result<(scenario::Scenario, Option<String>)> {
     if let Some(file) = &arguments.scenario {
-        return Ok(scenario::load(file, &arguments.set)?);
+        return Ok((scenario::load(file, &arguments.set)?, arguments.variant.clone()));
     }
     let folder = if arguments.table.is_dir() { Some(arguments.table.as_path()) } else { arguments.table.parent() };
     let identity = folder.map(campaign::read_identity).transpose()?.flatten();
@@ -91,5 +95,5 @@ fn load(arguments: &Arguments) -> anyhow::Result<scenario::Scenario> {
             arguments.table.display()
         )
     })?;
-    Ok(scenario::load(&identity.file, &identity.overrides)?)
+    Ok((scenario::load(&identity.file, &identity.overrides)?, identity.variant))
 }

@@ -20,6 +20,14 @@ pub enum CampaignError {
         /// The scenario.
         file: String,
     },
+    /// A variant that the file does not have.
+    #[error("the scenario's campaign has no variant \"{name}\"; it has {have}")]
+    NoVariant {
+        /// As given.
+        name: String,
+        /// Those that there are.
+        have: String,
+    },
     /// A dispersion makes no sense.
     #[error("campaign.disperse[{entry}] ({paths}): {reason}")]
     Dispersion {

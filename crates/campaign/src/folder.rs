@@ -33,6 +33,8 @@ pub struct Identity {
     pub file: PathBuf,
     /// Overrides that it was loaded with.
     pub overrides: Vec<String>,
+    /// Variant of its campaign.
+    pub variant: Option<String>,
     /// Digest of all that the runs depend on.
     pub fingerprint: String,
     /// Runs of the whole campaign.
@@ -57,6 +59,7 @@ impl Folder {
             scenario: plan.header.scenario.clone(),
             file: std::path::absolute(plan.scenario.source.file()).map_err(CampaignError::read(path))?,
             overrides: plan.scenario.source.overrides().to_vec(),
+            variant: plan.variant.clone(),
             fingerprint: plan.header.fingerprint.clone(),
             runs: plan.runs(),
             shard: [shard.index, shard.count],

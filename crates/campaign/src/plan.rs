@@ -6,7 +6,7 @@ use crate::design::Design;
 use crate::error::CampaignError;
 use crate::table::Header;
 use scenario::spec::Campaign;
-use scenario::{Mission, Scenario};
+use scenario::{Mission, Scenario, Stock};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
@@ -22,18 +22,23 @@ pub struct Plan {
     pub scenario: Scenario,
     /// Its campaign, with what the command line changed.
     pub campaign: Campaign,
+    /// The variant of it that was chosen.
+    pub variant: Option<String>,
     /// How inputs are drawn.
     pub design: Design,
     /// What the table is of.
     pub header: Header,
     gauges: Vec<Gauge>,
+    stock: Stock,
 }
 
 impl Plan {
     /// Builds the nominal mission once, checks every dispersion, and shows that the model hears each.
-    pub fn new(scenario: Scenario, runs: Option<u32>) -> Result<Self, CampaignError> {
+    ///
+    /// `variant` names dispersions other than the campaign's own; `runs` takes the place of the file's number.
+    pub fn new(scenario: Scenario, variant: Option<&str>, runs: Option<u32>) -> Result<Self, CampaignError> {
         let mut campaign = match (&scenario.campaign, runs) {
-            (Some(campaign), _) => campaign.clone(),
+            (Some(campaign), _) => chosen(campaign, variant)?,
             (None, Some(runs)) => empty(runs),
             (None, None) => return Err(CampaignError::NoCampaign { file: scenario.source.file().to_owned() }),
         };
@@ -59,7 +64,9 @@ impl Plan {
             fingerprint: String::new(),
         };
         let header = Header { fingerprint: fingerprint(&header, &nominal), ..header };
-        let plan = Self { scenario, campaign, design, header, gauges };
+        let stock = Stock::of(&nominal);
+        let variant = variant.map(str::to_owned);
+        let plan = Self { scenario, campaign, variant, design, header, gauges, stock };
         plan.check_heard()?;
         Ok(plan)
     }
@@ -81,6 +88,11 @@ impl Plan {
         Ok(self.scenario.with_numbers(&numbers, run_seed(self.scenario.seed, run))?)
     }
 
+    /// The mission of a run's scenario.
+    pub fn build(&self, scenario: &Scenario) -> Result<Mission, CampaignError> {
+        Ok(scenario::build_from(scenario, &self.stock)?)
+    }
+
     /// What the inputs are in a mission that was built.
     pub(crate) fn read_back(&self, mission: &Mission) -> Vec<Option<f64>> {
         self.gauges.iter().map(|gauge| gauge.read(mission)).collect()
@@ -89,7 +101,7 @@ impl Plan {
     /// A number that changes nothing in what is built is a slip of the pen, and a campaign over it a lie.
     fn check_heard(&self) -> Result<(), CampaignError> {
         let first = self.design.draw(0);
-        let Ok(base) = self.with_values(0, &first).and_then(|s| Ok(scenario::build(&s)?)) else { return Ok(()) };
+        let Ok(base) = self.with_values(0, &first).and_then(|s| self.build(&s)) else { return Ok(()) };
         let base = image(&base);
         for (k, input) in self.design.inputs.iter().enumerate() {
             let other = (1..LOOKED_AT).map(|run| self.design.draw(run)[k]).find(|value| *value != first[k]);
@@ -98,7 +110,7 @@ impl Plan {
             let mut values = first.clone();
             values[k] = other;
             // What cannot be built does hear it; the run itself will say why.
-            let Ok(built) = self.with_values(0, &values).and_then(|s| Ok(scenario::build(&s)?)) else { continue };
+            let Ok(built) = self.with_values(0, &values).and_then(|s| self.build(&s)) else { continue };
             if image(&built) == base {
                 let hint = hint(&self.scenario, &input.path);
                 return Err(CampaignError::Unheard { path: input.path.clone(), hint });
@@ -116,6 +128,21 @@ fn hint(scenario: &Scenario, path: &str) -> String {
     }
 }
 
+/// The campaign with the dispersions of a variant, or its own.
+fn chosen(campaign: &Campaign, variant: Option<&str>) -> Result<Campaign, CampaignError> {
+    let mut own = Campaign { variants: Vec::new(), ..campaign.clone() };
+    let Some(name) = variant else { return Ok(own) };
+    let Some(variant) = campaign.variants.iter().find(|v| v.name == name) else {
+        let have = campaign.variants.iter().map(|v| format!("\"{}\"", v.name)).collect::<Vec<_>>().join(", ");
+        let have = if have.is_empty() { "none".to_owned() } else { have };
+        return Err(CampaignError::NoVariant { name: name.to_owned(), have });
+    };
+    own.runs = variant.runs;
+    own.disperse.clone_from(&variant.disperse);
+    own.expects.clone_from(&variant.expects);
+    Ok(own)
+}
+
 fn empty(runs: u32) -> Campaign {
     Campaign {
         runs,
@@ -125,6 +152,7 @@ fn empty(runs: u32) -> Campaign {
         signals: Vec::new(),
         disperse: Vec::new(),
         correlate: Vec::new(),
+        variants: Vec::new(),
         expects: Vec::new(),
     }
 }

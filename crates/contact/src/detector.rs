@@ -112,7 +112,7 @@ impl Detector {
         for (i, collider) in scene.colliders().iter().enumerate() {
             let grow = Vec3::repeat(reach[collider.body] + SKIN);
             let mut bounds = Bounds { low: Vec3::repeat(f64::INFINITY), high: Vec3::repeat(f64::NEG_INFINITY) };
-            for part in &scene.parts[i] {
+            for part in scene.parts[i].iter() {
                 let frame = &poses[collider.body] * &part.frame_bp;
                 let centre = frame.point(&part.centre);
                 let half = if part.half.x.is_finite() { frame.rot.abs() * part.half } else { part.half };

@@ -8,6 +8,7 @@ use crate::{Collider, ContactError, Shape};
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::shape::SharedShape;
 use spatial::{Frame, Mat3, Pose, Vec3};
+use std::sync::Arc;
 
 /// One contact point of a pair, A the pair's first collider, B its second.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,7 +71,7 @@ pub(crate) struct Part {
 pub struct Scene {
     colliders: Vec<Collider>,
     pairs: Vec<[usize; 2]>,
-    pub(crate) parts: Vec<Vec<Part>>,
+    pub(crate) parts: Vec<Arc<[Part]>>,
     /// Pair of two colliders, by `low * n + high`; `NONE` where they are not looked at.
     pub(crate) pair_of: Vec<u32>,
 }
@@ -87,12 +88,30 @@ impl std::fmt::Debug for Scene {
 impl Scene {
     /// Checks and prepares colliders and pairs of their indices.
     pub fn new(colliders: Vec<Collider>, pairs: Vec<[usize; 2]>) -> Result<Self, ContactError> {
-        let mut parts = Vec::with_capacity(colliders.len());
+        Self::like(None, colliders, pairs)
+    }
+
+    /// As [`Scene::new`]; what a known scene has prepared for an equal collider is shared with it. The result is the same.
+    pub fn like(
+        known: Option<&Self>,
+        colliders: Vec<Collider>,
+        pairs: Vec<[usize; 2]>,
+    ) -> Result<Self, ContactError> {
+        let mut parts: Vec<Arc<[Part]>> = Vec::with_capacity(colliders.len());
         for collider in &colliders {
-            collider.check()?;
-            let mut own = Vec::new();
-            add_parts(collider, &collider.shape, &collider.pose_bs, &mut own)?;
-            parts.push(own);
+            let ready = known.and_then(|scene| {
+                let place = scene.colliders.iter().position(|c| c == collider)?;
+                Some(Arc::clone(&scene.parts[place]))
+            });
+            parts.push(match ready {
+                Some(ready) => ready,
+                None => {
+                    collider.check()?;
+                    let mut own = Vec::new();
+                    add_parts(collider, &collider.shape, &collider.pose_bs, &mut own)?;
+                    own.into()
+                }
+            });
         }
         let n = colliders.len();
         let mut pair_of = vec![NONE; n * n];

@@ -56,7 +56,7 @@ pub enum Shape {
 const FLAT: f64 = 1e-9;
 
 /// A shape that is fixed in a body.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Collider {
     /// Name, for errors and for choosing pairs (`servicer/finger_left`).
     pub name: String,

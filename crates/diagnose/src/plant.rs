@@ -2,11 +2,11 @@
 
 use crate::error::DiagnoseError;
 use record::{RecordedRun, RecordingSet};
-use scenario::Scenario;
+use scenario::{Scenario, Stock};
 use scenario::measure::{Gauge, MeasureError, Quantity, SensorModel};
 use scenario::spec::{Effect, ParamValue};
 use sim::{Actuator, ActuatorKind, DriveAxis, DrivePath, Model, State};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A scenario whose `[[effect]]` entries are varied, with what the recording says about it.
 #[derive(Clone, Debug)]
@@ -17,6 +17,8 @@ pub struct Plant {
     pub channels: Vec<String>,
     /// By run: paths of the driven coordinates.
     pub drives: Vec<Vec<Arc<DrivePath>>>,
+    /// What its builds share; the first one fills it.
+    stock: OnceLock<Stock>,
 }
 
 /// A built set of effects.
@@ -37,7 +39,7 @@ pub struct Built {
 impl Plant {
     /// The scenario alone, before a recording is read.
     pub fn new(scenario: Scenario) -> Self {
-        Self { scenario, channels: Vec::new(), drives: Vec::new() }
+        Self { scenario, channels: Vec::new(), drives: Vec::new(), stock: OnceLock::new() }
     }
 
     /// Takes channels and drive paths of a recording.
@@ -86,7 +88,11 @@ impl Plant {
     pub fn build(&self, effects: &[Effect]) -> Result<Built, DiagnoseError> {
         let mut scenario = self.scenario.clone();
         scenario.effects.extend(effects.iter().cloned());
-        let mission = scenario::build(&scenario)?;
+        let mission = match self.stock.get() {
+            Some(stock) => scenario::build_from(&scenario, stock)?,
+            None => scenario::build(&scenario)?,
+        };
+        self.stock.get_or_init(|| Stock::of(&mission));
         let model = Arc::clone(mission.world.model());
         let late = scenario.effects.iter().filter(|e| e.name == "actuator-delay");
         let delays = late.filter_map(|e| e.params.get("delay").and_then(ParamValue::number));

@@ -32,7 +32,7 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scenario, ScenarioError
 
 /// Parses the text of a scenario; `file_name` names it in errors, and its folder is where relative paths start.
 pub fn parse(text: &str, file_name: &str, overrides: &[String]) -> Result<Scenario, ScenarioErrors> {
-    let mut source =
+    let source =
         Source { file: file_name.to_owned(), text: text.into(), overrides: overrides.to_vec(), root: None };
     let (mut root, faults) = read_document(text);
     if !faults.is_empty() {
@@ -42,7 +42,12 @@ pub fn parse(text: &str, file_name: &str, overrides: &[String]) -> Result<Scenar
         };
         return Err(all_of(faults.into_iter().take(MOST_ERRORS + 1).map(error).collect(), &source));
     }
-    let mut errors = apply_all(&mut root, &source);
+    let errors = apply_all(&mut root, &source);
+    finish(root, source, errors)
+}
+
+/// The scenario of a tree, checked as a whole.
+fn finish(root: Node, mut source: Source, mut errors: Vec<ScenarioError>) -> Result<Scenario, ScenarioErrors> {
     errors.extend(check(&root, &source));
     if !errors.is_empty() {
         return Err(all_of(errors, &source));
@@ -107,10 +112,21 @@ impl Scenario {
 
     /// The scenario with numbers put at paths and another seed, checked as a whole again: a run of a campaign.
     pub fn with_numbers(&self, numbers: &[(&str, f64)], seed: u64) -> Result<Self, ScenarioErrors> {
-        let mut overrides = self.source.overrides.clone();
-        overrides.extend(numbers.iter().map(|(path, value)| format!("{path}={value:?}")));
-        overrides.push(format!("seed={seed}"));
-        parse(&self.source.text, &self.source.file, &overrides)
+        let mut source = self.source.clone();
+        let Some(root) = source.root.take() else {
+            return Err(ScenarioErrors::from(self.complaint("", "it was made by a program, not read from a file")));
+        };
+        let (mut root, mut errors) = ((*root).clone(), Vec::new());
+        let seed = ("seed", format!("{seed}"));
+        for (path, text) in numbers.iter().map(|(path, value)| (*path, format!("{value:?}"))).chain([seed]) {
+            let index = source.overrides.len();
+            source.overrides.push(format!("{path}={text}"));
+            // What fails leaves a tree that nobody will see.
+            if let Err(problem) = overrides::apply(&mut root, &source.overrides[index], index) {
+                errors.push(ScenarioError { place: source.place(Origin::Override(index)), problem });
+            }
+        }
+        finish(root, source, errors)
     }
 
     /// Where a value was written: the nearest place in the file, or the override that set it.

@@ -236,6 +236,11 @@ pub struct Model {
 impl Model {
     /// Numbers and checks a world.
     pub fn build(spec: ModelSpec) -> Result<Self, ModelError> {
+        Self::build_like(None, spec)
+    }
+
+    /// As [`Model::build`], to the bit; colliders that are equal to those of a known scene share what was prepared for them.
+    pub fn build_like(known: Option<&Scene>, spec: ModelSpec) -> Result<Self, ModelError> {
         if !(spec.step.is_finite() && spec.step > 0.0) {
             return Err(ModelError::Step(spec.step));
         }
@@ -246,7 +251,7 @@ impl Model {
         let collider_links = spec.shapes.iter().map(|s| link_name(&vehicles, s)).collect();
         let colliders: Vec<_> = spec.shapes.iter().map(|s| collider(&vehicles, s, owners.len())).collect();
         let (pairs, laws): (Vec<_>, Vec<_>) = spec.pairs.into_iter().unzip();
-        let scene = Scene::new(colliders, pairs)?;
+        let scene = Scene::like(known, colliders, pairs)?;
         let collider_radius = calc_collider_radius(&scene, owners.len() + 1);
         let coordinates = vehicles.iter().flat_map(coordinates_of).collect::<Vec<_>>();
         let mechanism_sides = resolve_mechanisms(&spec.mechanisms, &vehicles, owners.len())?;

@@ -2,7 +2,7 @@
 //!
 //! With g(u) the distance of the curve's point c(u) and n its gradient, g′ = n · c′ is exact. A distance is semiconcave, so
 //! its minima along a curve are smooth points, where g′ passes from − to +. It also changes by no more than the length of
-//! the curve between two samples, so stretches that cannot come near are passed over; the rest is sampled finely, more so
+//! the curve between two samples, so stretches that cannot come near are passed over; the rest is halved, more so
 //! where the slopes leave room for a hidden pair of extrema, and bracketed; the bracket is closed by the Illinois variant of regula falsi (Dowell and Jarratt 1971). A cold start every
 //! time, no history, no allocation.
 
@@ -13,8 +13,8 @@ use std::f64::consts::TAU;
 
 /// Coarse intervals along a curve.
 const COARSE: usize = 24;
-/// Fine intervals in each that may come near.
-const FINE: usize = 6;
+/// Halvings of each that may come near, passed over where a half cannot.
+const FINE: usize = 3;
 /// Halvings of an interval of a curve whose slopes leave room for two extrema, and most of them in one scan.
 const DEPTH: usize = 3;
 const BUDGET: usize = 1000;
@@ -83,7 +83,7 @@ pub(crate) trait Path {
     fn sample(&self, target: &Body<'_>, u: f64) -> (Near, f64);
 
     /// How often an interval may be halved where its slopes leave room for two extrema.
-    fn halvings(&self) -> usize;
+    fn halvings(&self, target: &Body<'_>) -> usize;
 
     /// Minima of the distance from `target` that are below `reach`, in the order of `u`.
     fn scan(&self, target: &Body<'_>, reach: f64) -> Scan
@@ -119,15 +119,6 @@ impl Curve {
         let (s, c) = u.sin_cos();
         self.origin + c * self.arms[0] + s * self.arms[1]
     }
-
-    #[inline]
-    fn tangent(&self, u: f64) -> Vec3 {
-        if self.arc.is_none() {
-            return self.arms[0];
-        }
-        let (s, c) = u.sin_cos();
-        c * self.arms[1] - s * self.arms[0]
-    }
 }
 
 impl Path for Curve {
@@ -136,14 +127,23 @@ impl Path for Curve {
         (from, span, self.arms[0].norm(), self.is_closed())
     }
 
-    fn halvings(&self) -> usize {
-        DEPTH
+    /// None between two circles: their distance has eight extrema at most, which the fine intervals tell apart.
+    fn halvings(&self, target: &Body<'_>) -> usize {
+        if self.is_closed() && target.is_ring() { 0 } else { DEPTH }
     }
 
     #[inline]
     fn sample(&self, target: &Body<'_>, u: f64) -> (Near, f64) {
-        let near = target.nearest(&self.point(u));
-        (near, near.normal.dot(&self.tangent(u)))
+        let [x, y] = self.arms;
+        let (point, tangent) = match self.arc {
+            None => (self.origin + u * x, x),
+            Some(_) => {
+                let (s, c) = u.sin_cos();
+                (self.origin + c * x + s * y, c * y - s * x)
+            }
+        };
+        let near = target.nearest(&point);
+        (near, near.normal.dot(&tangent))
     }
 }
 
@@ -169,7 +169,7 @@ fn scan(path: &impl Path, target: &Body<'_>, reach: f64) -> Scan {
         let after = if is_closed && i == COARSE { (u, first.1, first.2) } else { sample(path, target, u) };
         // No place between two samples is nearer than the mean of both less half the way between them.
         if 0.5 * (before.1 + after.1 - step * speed) < reach {
-            scan_finely(path, target, (before, after), &mut scan);
+            scan_finely(path, target, (before, after), FINE, (reach, &mut scan));
         }
         scan.far = scan.far.max(after.1);
         if after.1 < best.1 {
@@ -182,14 +182,22 @@ fn scan(path: &impl Path, target: &Body<'_>, reach: f64) -> Scan {
     scan
 }
 
-fn scan_finely(path: &impl Path, target: &Body<'_>, (from, to): (Sample, Sample), scan: &mut Scan) {
-    let mut before = from;
-    for i in 1..=FINE {
-        let u = from.0 + (to.0 - from.0) * i as f64 / FINE as f64;
-        let after = if i == FINE { to } else { sample(path, target, u) };
-        split(path, target, (before, after), path.halvings(), scan);
-        before = after;
+fn scan_finely(
+    path: &impl Path,
+    target: &Body<'_>,
+    (a, b): (Sample, Sample),
+    halvings: usize,
+    (reach, scan): (f64, &mut Scan),
+) {
+    if 0.5 * (a.1 + b.1 - (b.0 - a.0) * path.extent().2) >= reach {
+        return;
     }
+    if halvings == 0 {
+        return split(path, target, (a, b), path.halvings(target), scan);
+    }
+    let middle = sample(path, target, 0.5 * (a.0 + b.0));
+    scan_finely(path, target, (a, middle), halvings - 1, (reach, scan));
+    scan_finely(path, target, (middle, b), halvings - 1, (reach, scan));
 }
 
 /// Notes the minimum between two samples; halves the stretch where there may be more extrema than its ends tell.

@@ -84,7 +84,7 @@ impl Path for Face {
     }
 
     /// None: each sample is a search of its own.
-    fn halvings(&self) -> usize {
+    fn halvings(&self, _: &Body<'_>) -> usize {
         0
     }
 

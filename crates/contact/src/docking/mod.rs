@@ -100,7 +100,7 @@ impl Docking {
     /// Its pieces. `rank` tells twins apart (see [`Sheet`]).
     pub(crate) fn sheets(&self, rank: u64) -> impl Iterator<Item = Sheet> + use<> {
         let all_round =
-            |p: [f64; 2], q: [f64; 2], radius| Sheet { ends: [at(p), at(q)], half_sector: None, radius, rank };
+            |p: [f64; 2], q: [f64; 2], radius| Sheet { ends: [at(p), at(q)], half_sector: None, edge: (-1.0, 0.0), radius, rank };
         let [first, second] = match *self {
             Self::InnerCone { half_angle, depth, throat_radius, wall } => {
                 let (w, (s, c)) = (0.5 * wall, half_angle.sin_cos());
@@ -117,7 +117,8 @@ impl Docking {
             }
             Self::Petal { base_radius, tip_radius, height, half_sector, thickness } => {
                 let plate = all_round([base_radius, 0.0], [tip_radius, height], 0.5 * thickness);
-                [Some(Sheet { half_sector: Some(half_sector), ..plate }), None]
+                let edge = (half_sector.cos(), half_sector.sin());
+                [Some(Sheet { half_sector: Some(half_sector), edge, ..plate }), None]
             }
         };
         [first, second].into_iter().flatten()

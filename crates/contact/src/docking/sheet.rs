@@ -28,6 +28,8 @@ pub(crate) struct Sheet {
     pub(crate) ends: [Meridian; 2],
     /// Half the sector about +x, rad; `None`: all round.
     pub(crate) half_sector: Option<f64>,
+    /// Cosine and sine of half the sector; of all round, those of π.
+    pub(crate) edge: (f64, f64),
     /// Rounding radius w, m.
     pub(crate) radius: f64,
     /// Tells twins apart, so that which of two sheets leads does not depend on which is named first.
@@ -60,18 +62,19 @@ impl Sheet {
     /// Nearest point of the core to `p`.
     #[inline]
     pub(crate) fn nearest(&self, p: &Vec3) -> Near {
-        let (cos, sin) = unit(p.x, p.y);
+        let rho = (p.x * p.x + p.y * p.y).sqrt();
         match self.half_sector {
-            Some(half) if p.y.atan2(p.x).abs() > half => {
-                let (s, c) = half.copysign(p.y).sin_cos();
-                self.nearest_on_meridian(p, c, s)
+            // Outside of the sector: the cosine of the azimuth is below that of the edge.
+            Some(_) if p.x < self.edge.0 * rho => {
+                self.nearest_on_meridian(p, self.edge.0, self.edge.1.copysign(p.y))
             }
             _ => {
+                let (cos, sin) = if rho > 0.0 { (p.x / rho, p.y / rho) } else { (1.0, 0.0) };
                 let [from, _] = self.ends;
                 let (dr, dz) = self.along();
-                let t = self.foot(p.x.hypot(p.y) - from.rho, p.z - from.z);
-                let (r, z) = (p.x.hypot(p.y) - (from.rho + t * dr), p.z - (from.z + t * dz));
-                let distance = r.hypot(z);
+                let t = self.foot(rho - from.rho, p.z - from.z);
+                let (r, z) = (rho - (from.rho + t * dr), p.z - (from.z + t * dz));
+                let distance = (r * r + z * z).sqrt();
                 if distance > 0.0 {
                     let radial = r / distance;
                     return Near { normal: Vec3::new(radial * cos, radial * sin, z / distance), distance };
@@ -188,6 +191,6 @@ impl Sheet {
 /// Cosine and sine of the azimuth of (x, y); (1, 0) on the axis.
 #[inline]
 pub(crate) fn unit(x: f64, y: f64) -> (f64, f64) {
-    let r = x.hypot(y);
+    let r = (x * x + y * y).sqrt();
     if r > 0.0 { (x / r, y / r) } else { (1.0, 0.0) }
 }

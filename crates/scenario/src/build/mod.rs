@@ -14,6 +14,7 @@ mod laws;
 mod mechanisms;
 mod shapes;
 mod start;
+mod stock;
 mod vehicles;
 
 pub(crate) use actuators::ActuatorTable;
@@ -22,6 +23,7 @@ pub use drives::DriveChannel;
 pub(crate) use faults::Faults;
 pub(crate) use kinematics::{calc_error, halves, solve_pose};
 pub use shapes::shape_of_geometry;
+pub use stock::Stock;
 
 use crate::error::ScenarioErrors;
 use crate::spec::{self, Scenario};
@@ -57,9 +59,14 @@ impl std::fmt::Debug for Mission {
 
 /// Builds the world and the plan of a scenario.
 pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
+    build_from(scenario, &Stock::default())
+}
+
+/// As [`build`], to the bit, with what an earlier build of the same scenario has loaded and prepared.
+pub fn build_from(scenario: &Scenario, stock: &Stock) -> Result<Mission, ScenarioErrors> {
     let mut faults = Faults::new(scenario);
     let plan = effects::check(scenario, &mut faults);
-    let Some(vehicles) = vehicles::load(scenario, &plan, &mut faults) else { return Err(faults.into_errors()) };
+    let Some(vehicles) = vehicles::load(scenario, &plan, stock, &mut faults) else { return Err(faults.into_errors()) };
     let (robots, nominal_coms, mut specs) = vehicles;
     let table = actuators::resolve(scenario, &mut specs, &mut faults);
     let (shapes, pairs) = shapes::resolve(scenario, &robots, &specs, &mut faults);
@@ -92,7 +99,7 @@ pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
         step: scenario.integrator.step_s,
         one_sided_force: Vec3::zeros(),
     };
-    let model = match Model::build(spec) {
+    let model = match Model::build_like(stock.scene(), spec) {
         Ok(model) => drives::attach(scenario, model, &mut faults),
         Err(error) => {
             faults.add("", error.to_string());

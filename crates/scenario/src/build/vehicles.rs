@@ -2,22 +2,25 @@
 
 use super::effects::{self, Entry};
 use super::faults::Faults;
+use super::stock::Stock;
 use crate::spec::{BaseAxis, Environment, Scenario, Vehicle};
-use multibody::{RobotDescription, SearchPaths, Tree, load_urdf};
+use multibody::{RobotDescription, Tree};
 use sim::VehicleSpec;
 use spatial::Vec3;
+use std::path::PathBuf;
 
 /// Loads every vehicle's robot; `None` if one cannot be had, since nothing else can be checked then.
 pub(super) fn load(
     scenario: &Scenario,
     plan: &[Entry<'_>],
+    stock: &Stock,
     faults: &mut Faults<'_>,
 ) -> Option<(Vec<RobotDescription>, effects::NominalComs, Vec<VehicleSpec>)> {
     let dir = scenario.source.file_dir();
     let mut loaded = Vec::with_capacity(scenario.vehicles.len());
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
-        let search = SearchPaths::new(vehicle.package_paths.iter().map(|p| dir.join(p)));
-        match load_urdf(&dir.join(&vehicle.urdf), &search) {
+        let folders: Vec<PathBuf> = vehicle.package_paths.iter().map(|p| dir.join(p)).collect();
+        match stock.robot(&dir.join(&vehicle.urdf), &folders) {
             Ok(robot) => loaded.push((robot, base(scenario, i, vehicle, faults))),
             Err(errors) => faults.add(&format!("vehicle[{i}].urdf"), format!("the URDF cannot be used:\n{errors}")),
         }

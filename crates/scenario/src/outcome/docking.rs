@@ -167,10 +167,11 @@ impl DockingWatch {
     /// Outcome and reason at the end of the run.
     pub(super) fn conclude(&self, world: &World, last_contact: Option<f64>) -> (&'static str, String) {
         let (now, time) = (self.calc_relative(world), world.state().time);
-        if let Some(at) = self.released_at {
+        let overload = self.overload_at.filter(|at| self.released_at.is_none_or(|released| *at <= released));
+        if let Some(at) = self.released_at.filter(|_| overload.is_none()) {
             return ("released", format!("captured, but a capture latch let go at t = {at:.2} s"));
         }
-        if let Some(at) = self.overload_at {
+        if let Some(at) = overload {
             let limit = self.spec.overload_n.unwrap_or(f64::INFINITY);
             return ("overload", format!("contact forces passed {limit:.0} N at t = {at:.2} s"));
         }

@@ -42,7 +42,7 @@ impl KeepOutWatch {
     pub(super) fn new(rules: &[KeepOut], model: &Model) -> Option<Self> {
         let pairs = pairs_of(rules, model);
         let colliders = model.scene.colliders().to_vec();
-        let scene = Scene::new(colliders, pairs).ok().filter(|s| !s.pairs().is_empty())?;
+        let scene = Scene::like(Some(&model.scene), colliders, pairs).ok().filter(|s| !s.pairs().is_empty())?;
         let bodies = model.world_body() + 1;
         Some(Self {
             detector: Detector::new(&scene),

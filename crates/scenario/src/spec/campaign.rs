@@ -66,9 +66,45 @@ pub struct Campaign {
     /// Which of the dispersed numbers go together.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub correlate: Vec<Correlate>,
+    /// Other dispersions of the same scenario, chosen by name: the corners of a box, a sweep.
+    #[serde(default, rename = "variant", skip_serializing_if = "Vec::is_empty")]
+    pub variants: Vec<Variant>,
     /// What the campaign as a whole must show.
     #[serde(default, rename = "expect", skip_serializing_if = "Vec::is_empty")]
     pub expects: Vec<CampaignExpect>,
+}
+
+/// Dispersions that take the place of the campaign's own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Variant {
+    /// Its name, for `--variant`.
+    #[schemars(extend("x-name" = true))]
+    pub name: String,
+    /// How many runs.
+    #[schemars(range(min = 1))]
+    pub runs: u32,
+    /// What differs between them.
+    #[schemars(length(min = 1))]
+    pub disperse: Vec<Disperse>,
+    /// What this campaign as a whole must show.
+    #[serde(default, rename = "expect", skip_serializing_if = "Vec::is_empty")]
+    pub expects: Vec<CampaignExpect>,
+}
+
+/// A change of the scenario that must end otherwise: it shows that the scenario can tell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mutation {
+    /// Its name.
+    #[schemars(extend("x-name" = true))]
+    pub name: String,
+    /// Overrides, `path=value`.
+    #[schemars(length(min = 1), inner(length(min = 3)))]
+    pub set: Vec<String>,
+    /// The outcome that it must have.
+    #[schemars(length(min = 1))]
+    pub outcome: String,
 }
 
 /// How the unit cube behind the distributions is filled.

@@ -24,7 +24,8 @@ mod vehicle;
 
 pub use actuator::{Actuator, ActuatorKind, Drive, DriveAxis, DriveMotion, JointDrive};
 pub use campaign::{
-    Ball, Campaign, CampaignExpect, Correlate, Directions, Disperse, Expect, Normal, Sampling, Scalar, Sweep, Uniform,
+    Ball, Campaign, CampaignExpect, Correlate, Directions, Disperse, Expect, Mutation, Normal, Sampling, Scalar, Sweep, Uniform,
+    Variant,
 };
 pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw, Pivot, PointRule};
 pub use docking::{Approach, Docking, KeepOut};
@@ -107,6 +108,9 @@ pub struct Scenario {
     /// What a regression run must show.
     #[serde(default, rename = "expect", skip_serializing_if = "Vec::is_empty")]
     pub expects: Vec<Expect>,
+    /// Changes that must end otherwise.
+    #[serde(default, rename = "mutation", skip_serializing_if = "Vec::is_empty")]
+    pub mutations: Vec<Mutation>,
     /// What is recorded.
     #[serde(default)]
     pub output: Output,

@@ -1,6 +1,7 @@
 //! A vehicle: a URDF, how its base is held, and where everything starts.
 
 use super::docking::Approach;
+use super::mechanism::MechanismSide;
 use super::pose::{PoseSpec, TwistSpec, attitude};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -37,6 +38,10 @@ pub struct Vehicle {
     /// Start in front of a port, instead of `pose` and `twist`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub approach: Option<Approach>,
+    /// Start at rest on a link of a vehicle above, wherever that is and however it moves: a ring on its struts. Instead of `pose`
+    /// and `twist`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rides_on: Option<MechanismSide>,
     /// Initial arm pose by inverse kinematics, starting from `joints`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_effector_pose: Option<EndEffectorPose>,
