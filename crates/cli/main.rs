@@ -17,6 +17,7 @@ mod merge;
 mod new;
 mod plant;
 mod progress;
+mod regress;
 mod replay;
 mod run;
 mod schema;
@@ -66,6 +67,8 @@ enum Subcommands {
     Compare(compare::Arguments),
     /// Join the tables of a campaign's shards
     Merge(merge::Arguments),
+    /// The catalogue of scenarios against its baselines
+    Regress(regress::Arguments),
     /// Make one run of a campaign again, bit for bit, and record it
     Replay(replay::Arguments),
     /// Where a scenario and a recording differ, what was left out, and how much better it predicts with it
@@ -92,6 +95,8 @@ enum Status {
 const BAD_INPUT: u8 = 3;
 
 fn main() -> ExitCode {
+    // A reader that has seen enough (`| head`) ends the command quietly, as it ends any other.
+    sigpipe::reset();
     let result = match Arguments::parse().command {
         Subcommands::Run(arguments) => run::main(&arguments),
         Subcommands::Check(arguments) => check::main(&arguments),
@@ -101,6 +106,7 @@ fn main() -> ExitCode {
         Subcommands::Campaign(arguments) => campaign::main(&arguments),
         Subcommands::Compare(arguments) => compare::main(&arguments),
         Subcommands::Merge(arguments) => merge::main(&arguments),
+        Subcommands::Regress(arguments) => regress::main(&arguments),
         Subcommands::Replay(arguments) => replay::main(&arguments),
         Subcommands::Diagnose(arguments) => diagnose::main(&arguments),
         Subcommands::Plant(arguments) => plant::main(&arguments),

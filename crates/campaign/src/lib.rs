@@ -15,6 +15,7 @@ mod folder;
 mod journal;
 mod merge;
 mod plan;
+pub mod regress;
 mod replay;
 pub mod report;
 mod row;

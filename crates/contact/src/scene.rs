@@ -92,11 +92,7 @@ impl Scene {
     }
 
     /// As [`Scene::new`]; what a known scene has prepared for an equal collider is shared with it. The result is the same.
-    pub fn like(
-        known: Option<&Self>,
-        colliders: Vec<Collider>,
-        pairs: Vec<[usize; 2]>,
-    ) -> Result<Self, ContactError> {
+    pub fn like(known: Option<&Self>, colliders: Vec<Collider>, pairs: Vec<[usize; 2]>) -> Result<Self, ContactError> {
         let mut parts: Vec<Arc<[Part]>> = Vec::with_capacity(colliders.len());
         for collider in &colliders {
             let ready = known.and_then(|scene| {

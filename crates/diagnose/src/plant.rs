@@ -2,9 +2,9 @@
 
 use crate::error::DiagnoseError;
 use record::{RecordedRun, RecordingSet};
-use scenario::{Scenario, Stock};
 use scenario::measure::{Gauge, MeasureError, Quantity, SensorModel};
 use scenario::spec::{Effect, ParamValue};
+use scenario::{Scenario, Stock};
 use sim::{Actuator, ActuatorKind, DriveAxis, DrivePath, Model, State};
 use std::sync::{Arc, OnceLock};
 

@@ -32,8 +32,7 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scenario, ScenarioError
 
 /// Parses the text of a scenario; `file_name` names it in errors, and its folder is where relative paths start.
 pub fn parse(text: &str, file_name: &str, overrides: &[String]) -> Result<Scenario, ScenarioErrors> {
-    let source =
-        Source { file: file_name.to_owned(), text: text.into(), overrides: overrides.to_vec(), root: None };
+    let source = Source { file: file_name.to_owned(), text: text.into(), overrides: overrides.to_vec(), root: None };
     let (mut root, faults) = read_document(text);
     if !faults.is_empty() {
         let error = |fault: crate::document::SyntaxFault| ScenarioError {

@@ -99,8 +99,13 @@ impl Docking {
 
     /// Its pieces. `rank` tells twins apart (see [`Sheet`]).
     pub(crate) fn sheets(&self, rank: u64) -> impl Iterator<Item = Sheet> + use<> {
-        let all_round =
-            |p: [f64; 2], q: [f64; 2], radius| Sheet { ends: [at(p), at(q)], half_sector: None, edge: (-1.0, 0.0), radius, rank };
+        let all_round = |p: [f64; 2], q: [f64; 2], radius| Sheet {
+            ends: [at(p), at(q)],
+            half_sector: None,
+            edge: (-1.0, 0.0),
+            radius,
+            rank,
+        };
         let [first, second] = match *self {
             Self::InnerCone { half_angle, depth, throat_radius, wall } => {
                 let (w, (s, c)) = (0.5 * wall, half_angle.sin_cos());

@@ -65,9 +65,7 @@ impl Sheet {
         let rho = (p.x * p.x + p.y * p.y).sqrt();
         match self.half_sector {
             // Outside of the sector: the cosine of the azimuth is below that of the edge.
-            Some(_) if p.x < self.edge.0 * rho => {
-                self.nearest_on_meridian(p, self.edge.0, self.edge.1.copysign(p.y))
-            }
+            Some(_) if p.x < self.edge.0 * rho => self.nearest_on_meridian(p, self.edge.0, self.edge.1.copysign(p.y)),
             _ => {
                 let (cos, sin) = if rho > 0.0 { (p.x / rho, p.y / rho) } else { (1.0, 0.0) };
                 let [from, _] = self.ends;

@@ -56,9 +56,16 @@ fn carry(scenario: &Scenario, world: &mut World, v: usize, faults: &mut Faults<'
     let Some(side) = &vehicle.rides_on else { return };
     let key = format!("vehicle[{v}].rides_on");
     let Some(((host, link), pose)) = carrier(scenario, world, v) else {
-        let valid = world.model().vehicles[..v].iter().flat_map(|v| v.tree.links.iter().map(|l| format!("{}/{}", v.name, l.name)));
+        let valid = world.model().vehicles[..v]
+            .iter()
+            .flat_map(|v| v.tree.links.iter().map(|l| format!("{}/{}", v.name, l.name)));
         let valid: Vec<String> = valid.collect();
-        faults.unknown(&format!("{key}.on"), "link of a vehicle above this one", &side.on, valid.iter().map(String::as_str));
+        faults.unknown(
+            &format!("{key}.on"),
+            "link of a vehicle above this one",
+            &side.on,
+            valid.iter().map(String::as_str),
+        );
         return;
     };
     if vehicle.pose != Default::default() || vehicle.twist != Default::default() || vehicle.approach.is_some() {

@@ -17,6 +17,7 @@ mod effect;
 mod friction;
 mod mechanism;
 mod pose;
+mod regress;
 mod sensor;
 mod shape;
 mod strategy;
@@ -24,8 +25,8 @@ mod vehicle;
 
 pub use actuator::{Actuator, ActuatorKind, Drive, DriveAxis, DriveMotion, JointDrive};
 pub use campaign::{
-    Ball, Campaign, CampaignExpect, Correlate, Directions, Disperse, Expect, Mutation, Normal, Sampling, Scalar, Sweep, Uniform,
-    Variant,
+    Ball, Campaign, CampaignExpect, Correlate, Directions, Disperse, Expect, Mutation, Normal, Sampling, Scalar, Sweep,
+    Uniform, Variant,
 };
 pub use contact::{ContactLaw, ContactRule, Grain, NormalLaw, Pivot, PointRule};
 pub use docking::{Approach, Docking, KeepOut};
@@ -35,6 +36,7 @@ pub use mechanism::{
     Capture, Hold, Latch, Mechanism, MechanismKind, MechanismSide, Overload, PerAxis, Strut, StrutSides, Weld,
 };
 pub use pose::{PoseSpec, TwistSpec};
+pub use regress::Tolerance;
 pub use sensor::{MechanismEnd, Sensor, SensorKind};
 pub use shape::{Shape, ShapeKind};
 pub use strategy::{Command, OneOrMany, Replay, Schedule, SoftDock, Strategy, TrackAndGrasp};
@@ -108,6 +110,9 @@ pub struct Scenario {
     /// What a regression run must show.
     #[serde(default, rename = "expect", skip_serializing_if = "Vec::is_empty")]
     pub expects: Vec<Expect>,
+    /// How far a regression run may be from its baseline.
+    #[serde(default, rename = "tolerance", skip_serializing_if = "Vec::is_empty")]
+    pub tolerances: Vec<Tolerance>,
     /// Changes that must end otherwise.
     #[serde(default, rename = "mutation", skip_serializing_if = "Vec::is_empty")]
     pub mutations: Vec<Mutation>,
