@@ -163,11 +163,10 @@ fn toml_of(scenario: &Scenario, campaign: &Campaign) -> String {
     scenario::to_toml(&Scenario { campaign: Some(campaign), ..scenario.clone() })
 }
 
-/// The built model and its state as text: two builds that differ in anything differ here.
+/// The built model and its state as text: two builds that differ in anything but the places of their files differ here.
 fn image(mission: &Mission) -> String {
-    let mut text = String::new();
-    let _ = write!(text, "{:?}{:?}{:?}", mission.world.model(), mission.world.state(), mission.robots);
-    text
+    let model = mission.world.model();
+    format!("{model:?}{:?}{:?}", model.scene.colliders(), mission.world.state())
 }
 
 /// Digest of the version, the inputs and everything that was built from files.

@@ -3,7 +3,7 @@ const value = (cell) => {
   const text = cell.textContent.replace(/−/g, "-").trim();
   const power = { "⁰": 0, "¹": 1, "²": 2, "³": 3, "⁴": 4, "⁵": 5, "⁶": 6, "⁷": 7, "⁸": 8, "⁹": 9, "⁻": "-" };
   const plain = text.replace(/·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)/, (_, p) => "e" + [...p].map((c) => power[c]).join(""));
-  const number = parseFloat(plain);
+  const number = parseFloat(plain.replace(/^<\s*/, ""));
   return text === "–" || text === "" ? -Infinity : isNaN(number) ? text : number;
 };
 for (const table of document.querySelectorAll("table.sortable")) {
