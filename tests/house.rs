@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The one total order.
-const ORDER: [&str; 9] =
+const ORDER: [&str; 10] =
     ["spatial", "friction", "contact", "multibody", "sim", "record", "lab", "scenario", "campaign", "diagnose"];
 
 /// The wall.

@@ -20,13 +20,15 @@ pub struct Design {
     sampling: Sampling,
     strata: u64,
     entries: Vec<Entry>,
-    /// Lower triangle over the correlated entries, and their indices.
-    copula: Option<(DMatrix<f64>, Vec<usize>)>,
+    copula: Option<Copula>,
     /// Combinations of all grids.
     combinations: u64,
     /// The dispersed numbers, in the order of the file.
     pub inputs: Vec<Input>,
 }
+
+/// Lower triangle over the correlated entries, and their indices.
+type Copula = (DMatrix<f64>, Vec<usize>);
 
 /// One `[[campaign.disperse]]`.
 #[derive(Clone, Debug)]
@@ -241,7 +243,7 @@ fn check_names(inputs: &[Input]) -> Result<(), CampaignError> {
     Ok(())
 }
 
-fn copula(campaign: &Campaign, entries: &[Entry]) -> Result<Option<(DMatrix<f64>, Vec<usize>)>, CampaignError> {
+fn copula(campaign: &Campaign, entries: &[Entry]) -> Result<Option<Copula>, CampaignError> {
     let find = |name: &String| {
         let found = entries.iter().position(|e| e.name == *name || e.key == *name);
         match found {
