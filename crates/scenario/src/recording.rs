@@ -6,7 +6,7 @@ use record::{ChannelSpec, Meta, Plot, Probe, RecorderPlan, Scene, SceneVehicle, 
 use sim::World;
 use spatial::Vec3;
 
-/// What is seen: the vehicles, the close-up of the target, and the tool's trail.
+/// What is seen: the vehicles, the close-up of the target or the port, and the trail of what comes.
 pub fn scene(mission: &Mission) -> Scene {
     let vehicles = mission.scenario.vehicles.iter().zip(&mission.robots);
     let mut scene = Scene {
@@ -36,6 +36,13 @@ pub fn scene(mission: &Mission) -> Scene {
         let trail = |name: &str, link: usize| Trail { name: name.to_owned(), link, point_l: Vec3::zeros() };
         scene.trails.extend(tool.map(|l| trail("tool", l)));
         scene.trails.extend(grapple.map(|l| trail("grapple point", l)));
+    }
+    if let Some(docking) = &mission.scenario.docking {
+        let index = |name: &str| name.split_once('/').and_then(|(v, l)| scene.link_index(v, l));
+        let (visitor, port) = (index(&docking.visitor), index(&docking.port));
+        scene.close_up = scene.close_up.or(port);
+        let trail = |name: &str, link: usize| Trail { name: name.to_owned(), link, point_l: Vec3::zeros() };
+        scene.trails.extend(visitor.map(|l| trail("visitor", l)));
     }
     scene
 }
