@@ -147,20 +147,28 @@ impl Couple<'_> {
 impl Narrow {
     /// Appends the points of two convex pieces.
     pub(crate) fn add_convex(&mut self, couple: &Couple) {
-        if let Some(axis) = self.find_axis(couple) {
-            self.add_manifold(couple, &axis);
+        let Some((axis, sharpest)) = self.find_axis(couple) else { return };
+        let before = self.out.len();
+        self.add_manifold(couple, &axis);
+        // Edges that were passed over for a face cross at this height over it, if they are edges of that face at all.
+        let crossing = sharpest.gap / axis.n.dot(&sharpest.n) - couple.radii();
+        let found = self.out[before..].iter().map(|t| t.gap).fold(f64::INFINITY, f64::min);
+        if found > crossing + PREFER_FACE * couple.scale() {
+            self.add_manifold(couple, &sharpest);
         }
     }
 
-    /// The contact axis, or `None` where the pieces are further apart than the margin.
-    pub(crate) fn find_axis(&mut self, couple: &Couple) -> Option<Axis> {
+    /// The contact axis, and what it was before a face was preferred to edges beside it; `None` where the pieces are
+    /// further apart than the margin.
+    pub(crate) fn find_axis(&mut self, couple: &Couple) -> Option<(Axis, Axis)> {
         let Couple { a, b, ab, margin } = couple;
-        let axis = match (&a.core, &b.core) {
-            (Core::Triangle(t), Core::Point) => on_ball(on_triangle(t, &ab.pos), &ab.pos),
-            (Core::Polytope(p), Core::Point) => on_ball(on_polytope(p, &ab.pos), &ab.pos),
+        let ball = |place: Nearest| [on_ball(place, &ab.pos); 2].into();
+        let (axis, sharpest) = match (&a.core, &b.core) {
+            (Core::Triangle(t), Core::Point) => ball(on_triangle(t, &ab.pos)),
+            (Core::Polytope(p), Core::Point) => ball(on_polytope(p, &ab.pos)),
             _ => self.propose_and_snap(couple)?,
         };
-        (axis.gap - couple.radii() < *margin).then_some(axis)
+        (axis.gap - couple.radii() < *margin).then_some((axis, sharpest))
     }
 
     /// Appends the points along an axis.
@@ -266,7 +274,7 @@ impl Narrow {
         best.gap.is_finite().then_some(best)
     }
 
-    fn propose_and_snap(&mut self, couple: &Couple) -> Option<Axis> {
+    fn propose_and_snap(&mut self, couple: &Couple) -> Option<(Axis, Axis)> {
         let proposal = self.propose(couple)?;
         let scale = couple.scale();
         let (face_a, face_b) = couple.faces(&proposal);
@@ -284,7 +292,7 @@ impl Narrow {
         self.try_edges(couple, &proposal.n, &mut improve);
         try_radii(couple, &proposal.n, &mut improve);
         improve(proposal);
-        Some(couple.flattened(best, [face_a, face_b]))
+        Some((couple.flattened(best, [face_a, face_b]), best))
     }
 
     /// Common perpendiculars of the edges of the two faces that look along the proposal.

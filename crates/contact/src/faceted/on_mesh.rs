@@ -87,7 +87,7 @@ impl OnMesh<'_> {
             narrow.add_overlap(&couple, &Axis { n: outward, gap: face, kind: Kind::Face });
             return;
         }
-        let Some(axis) = narrow.find_axis(&couple) else { return };
+        let Some((axis, _)) = narrow.find_axis(&couple) else { return };
         match self.judge(i, triangle, &axis, side) {
             Verdict::Nothing => {}
             Verdict::Feature => narrow.add_manifold(&couple, &axis),
