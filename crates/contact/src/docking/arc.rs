@@ -11,8 +11,9 @@ use super::sheet::Near;
 use spatial::Vec3;
 use std::f64::consts::TAU;
 
-/// Coarse intervals along a curve.
+/// Coarse intervals along a curve, and how many of them are first looked at as one.
 const COARSE: usize = 24;
+const WIDE: usize = 8;
 /// Halvings of each that may come near, passed over where a half cannot.
 const FINE: usize = 3;
 /// Halvings of an interval of a curve whose slopes leave room for two extrema, and most of them in one scan.
@@ -49,9 +50,9 @@ pub(crate) struct Scan {
     minima: [Minimum; MOST],
     count: usize,
     budget: usize,
-    /// Largest distance of the coarse samples, m.
+    /// Largest distance of the coarse samples, m; infinite where stretches were passed over.
     pub(crate) far: f64,
-    /// The nearest of the coarse samples.
+    /// The nearest of the coarse samples that were taken.
     pub(crate) nearest: Minimum,
     /// Smaller distance of the two ends, m.
     pub(crate) ends: f64,
@@ -163,54 +164,91 @@ fn scan(path: &impl Path, target: &Body<'_>, reach: f64) -> Scan {
     let start = Minimum { u: from, near: Near { normal: Vec3::z(), distance: f64::INFINITY } };
     let mut scan =
         Scan { minima: [start; MOST], count: 0, budget: BUDGET, far: first.1, nearest: start, ends: first.1 };
-    let (mut best, mut before) = (first, first);
-    for i in 1..=COARSE {
+    let mut search = Search { path, target, reach, speed, best: first, scan: &mut scan };
+    let mut before = first;
+    for i in (WIDE..=COARSE).step_by(WIDE) {
         let u = from + step * i as f64;
         let after = if is_closed && i == COARSE { (u, first.1, first.2) } else { sample(path, target, u) };
-        // No place between two samples is nearer than the mean of both less half the way between them.
-        if 0.5 * (before.1 + after.1 - step * speed) < reach {
-            scan_finely(path, target, (before, after), FINE, (reach, &mut scan));
-        }
-        scan.far = scan.far.max(after.1);
-        if after.1 < best.1 {
-            best = after;
-        }
+        search.note(after);
+        search.coarsely((before, i - WIDE), (after, i), (from, step));
         before = after;
     }
+    let best = search.best;
     scan.ends = scan.ends.min(before.1);
     scan.nearest = minimum(path, target, best.0);
     scan
 }
 
-fn scan_finely(
-    path: &impl Path,
-    target: &Body<'_>,
-    (a, b): (Sample, Sample),
-    halvings: usize,
-    (reach, scan): (f64, &mut Scan),
-) {
-    if 0.5 * (a.1 + b.1 - (b.0 - a.0) * path.extent().2) >= reach {
-        return;
-    }
-    if halvings == 0 {
-        return split(path, target, (a, b), path.halvings(target), scan);
-    }
-    let middle = sample(path, target, 0.5 * (a.0 + b.0));
-    scan_finely(path, target, (a, middle), halvings - 1, (reach, scan));
-    scan_finely(path, target, (middle, b), halvings - 1, (reach, scan));
+/// A scan under way.
+struct Search<'a, P> {
+    path: &'a P,
+    target: &'a Body<'a>,
+    reach: f64,
+    speed: f64,
+    /// The nearest of the coarse samples.
+    best: Sample,
+    scan: &'a mut Scan,
 }
 
-/// Notes the minimum between two samples; halves the stretch where there may be more extrema than its ends tell.
-fn split(path: &impl Path, target: &Body<'_>, (a, b): (Sample, Sample), depth: usize, scan: &mut Scan) {
-    if depth > 0 && scan.budget > 0 && may_hide(path.extent().2, &a, &b) {
-        scan.budget -= 1;
-        let middle = sample(path, target, 0.5 * (a.0 + b.0));
-        split(path, target, (a, middle), depth - 1, scan);
-        return split(path, target, (middle, b), depth - 1, scan);
+impl<P: Path> Search<'_, P> {
+    /// No place between two samples is nearer than the mean of both less half the way between them.
+    fn stays_away(&self, a: &Sample, b: &Sample) -> bool {
+        0.5 * (a.1 + b.1 - (b.0 - a.0) * self.speed) >= self.reach
     }
-    if a.2 < 0.0 && b.2 >= 0.0 {
-        let u = find_root(&|u| path.sample(target, u).1, (a.0, a.2), (b.0, b.2));
-        scan.push(minimum(path, target, u));
+
+    fn note(&mut self, sample: Sample) {
+        self.scan.far = self.scan.far.max(sample.1);
+        if sample.1 < self.best.1 {
+            self.best = sample;
+        }
+    }
+
+    /// Between the coarse samples of these numbers.
+    fn coarsely(&mut self, (a, i): (Sample, usize), (b, j): (Sample, usize), (from, step): (f64, f64)) {
+        if self.stays_away(&a, &b) {
+            // What is passed over does not touch.
+            self.scan.far = f64::INFINITY;
+        } else if j - i == 1 {
+            self.finely(a, b, FINE);
+        } else {
+            let k = (i + j) / 2;
+            let middle = sample(self.path, self.target, from + step * k as f64);
+            self.note(middle);
+            self.coarsely((a, i), (middle, k), (from, step));
+            self.coarsely((middle, k), (b, j), (from, step));
+        }
+    }
+
+    fn finely(&mut self, a: Sample, b: Sample, halvings: usize) {
+        if self.stays_away(&a, &b) {
+            return;
+        }
+        if halvings == 0 {
+            return self.split(a, b, self.path.halvings(self.target));
+        }
+        let middle = sample(self.path, self.target, 0.5 * (a.0 + b.0));
+        self.finely(a, middle, halvings - 1);
+        self.finely(middle, b, halvings - 1);
+    }
+
+    /// Notes the minimum between two samples; halves the stretch where there may be more extrema than its ends tell.
+    fn split(&mut self, a: Sample, b: Sample, depth: usize) {
+        if self.stays_away(&a, &b) {
+            return;
+        }
+        if depth > 0 && self.scan.budget > 0 && may_hide(self.speed, &a, &b) {
+            self.scan.budget -= 1;
+            let middle = sample(self.path, self.target, 0.5 * (a.0 + b.0));
+            self.split(a, middle, depth - 1);
+            return self.split(middle, b, depth - 1);
+        }
+        if a.2 < 0.0 && b.2 >= 0.0 {
+            let u = find_root(&|u| self.path.sample(self.target, u).1, (a.0, a.2), (b.0, b.2));
+            let found = minimum(self.path, self.target, u);
+            if found.near.distance < self.reach {
+                self.scan.push(found);
+            }
+        }
     }
 }
 
