@@ -314,3 +314,109 @@ fn truncated(mean: f64, sigma: f64, [low, high]: [f64; 2], u: f64) -> f64 {
 fn standard_normal() -> Normal {
     Normal::standard()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RUNS: u64 = 4000;
+
+    /// A column for each input of a campaign that is written like this.
+    fn columns(campaign: &str, runs: u64) -> Vec<Vec<f64>> {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/probe-drogue.toml");
+        let scenario = scenario::load(file.as_ref(), &[]).expect("the scenario is in the repository");
+        let campaign: Campaign = toml::from_str(campaign).expect("a campaign");
+        let design = Design::new(&scenario, &campaign).expect("it can be drawn");
+        let drawn: Vec<Vec<f64>> = (0..runs).map(|run| design.draw(run)).collect();
+        (0..design.inputs.len()).map(|k| drawn.iter().map(|row| row[k]).collect()).collect()
+    }
+
+    fn mean(x: &[f64]) -> f64 {
+        x.iter().sum::<f64>() / x.len() as f64
+    }
+
+    fn correlation(x: &[f64], y: &[f64]) -> f64 {
+        let product = |a: &[f64], b: &[f64]| {
+            let (ma, mb) = (mean(a), mean(b));
+            a.iter().zip(b).map(|(p, q)| (p - ma) * (q - mb)).sum::<f64>()
+        };
+        product(x, y) / (product(x, x) * product(y, y)).sqrt()
+    }
+
+    #[test]
+    fn correlated_normals_have_the_correlation_and_their_own_spread() {
+        let all = columns(
+            "runs = 4000\nsampling = \"latin-hypercube\"\n\
+             disperse = [{ name = \"a\", path = \"seed\", normal = { mean = 3.0, sigma = 2.0 } }, \
+             { name = \"b\", path = \"duration_s\", normal = { mean = 0.0, sigma = 0.1 } }]\n\
+             correlate = [{ between = [\"a\", \"b\"], rho = 0.7 }]",
+            RUNS,
+        );
+        // Standard error of a correlation: (1 − ρ²)/√n.
+        let error = (1.0 - 0.49) / (RUNS as f64).sqrt();
+        assert!((correlation(&all[0], &all[1]) - 0.7).abs() < 4.0 * error);
+        let spread = |x: &[f64]| mean(&x.iter().map(|v| (v - mean(x)).powi(2)).collect::<Vec<_>>()).sqrt();
+        assert!((mean(&all[0]) - 3.0).abs() < 0.15 && (spread(&all[0]) - 2.0).abs() < 0.1);
+        assert!((spread(&all[1]) - 0.1).abs() < 0.005);
+    }
+
+    #[test]
+    fn a_truncated_normal_keeps_within_its_ends_and_has_its_own_mean() {
+        let x = &columns(
+            "runs = 4000\nsampling = \"latin-hypercube\"\n\
+             disperse = [{ path = \"duration_s\", normal = { mean = 1.0, sigma = 0.5, low = 1.0, high = 2.0 } }]",
+            RUNS,
+        )[0];
+        assert!(x.iter().all(|x| (1.0..=2.0).contains(x)));
+        // μ + σ (φ(α) − φ(β))/(Φ(β) − Φ(α)) with α = 0, β = 2.
+        let expected = 1.0 + 0.5 * (0.398_942_280_4 - 0.053_990_966_5) / 0.477_249_868_1;
+        assert!((mean(x) - expected).abs() < 1e-3, "{} for {expected}", mean(x));
+    }
+
+    #[test]
+    fn a_disc_is_filled_evenly_and_directions_lie_on_its_rim() {
+        let all = columns(
+            "runs = 4000\ndisperse = [{ name = \"r\", paths = [\"duration_s\", \"seed\"], ball = { radius = 2.0 } }]",
+            RUNS,
+        );
+        let inside = |radius: f64| {
+            let within = all[0].iter().zip(&all[1]).filter(|(x, y)| x.hypot(**y) < radius).count();
+            within as f64 / RUNS as f64
+        };
+        assert_eq!(inside(2.0 + 1e-12), 1.0);
+        // A quarter of the area; standard error √(p q/n).
+        assert!((inside(1.0) - 0.25).abs() < 4.0 * (0.25 * 0.75 / RUNS as f64).sqrt());
+        let rim = columns(
+            "runs = 8\ndisperse = [{ name = \"r\", paths = [\"duration_s\", \"seed\"], directions = { radius = 2.0, count = 8 } }]",
+            8,
+        );
+        assert!(rim[0].iter().zip(&rim[1]).all(|(x, y)| (x.hypot(*y) - 2.0).abs() < 1e-12));
+        assert!(mean(&rim[0]).abs() < 1e-12 && mean(&rim[1]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn grids_take_every_combination_once_the_first_slowest() {
+        let all = columns(
+            "runs = 6\ndisperse = [{ path = \"duration_s\", grid = [1.0, 2.0] }, \
+             { path = \"seed\", sweep = { low = 0.0, high = 1.0, count = 3 } }]",
+            6,
+        );
+        assert_eq!(all[0], [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]);
+        assert_eq!(all[1], [0.0, 0.5, 1.0, 0.0, 0.5, 1.0]);
+    }
+
+    #[test]
+    fn correlations_that_contradict_each_other_are_refused() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/probe-drogue.toml");
+        let scenario = scenario::load(file.as_ref(), &[]).expect("the scenario is in the repository");
+        let three = "runs = 10\n\
+             disperse = [{ name = \"a\", path = \"seed\", uniform = { low = 0.0, high = 1.0 } }, \
+             { name = \"b\", path = \"duration_s\", uniform = { low = 0.0, high = 1.0 } }, \
+             { name = \"c\", path = \"integrator.step_s\", uniform = { low = 0.0, high = 1.0 } }]\n\
+             correlate = [{ between = [\"a\", \"b\"], rho = 0.9 }, { between = [\"b\", \"c\"], rho = 0.9 }, \
+             { between = [\"a\", \"c\"], rho = -0.9 }]";
+        let campaign: Campaign = toml::from_str(three).expect("a campaign");
+        let refused = Design::new(&scenario, &campaign).expect_err("no such numbers exist");
+        assert!(matches!(refused, CampaignError::NotACorrelation { .. }), "{refused}");
+    }
+}
