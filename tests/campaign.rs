@@ -106,6 +106,32 @@ fn a_campaign_that_is_killed_ten_times_loses_nothing() {
 }
 
 #[test]
+fn ctrl_c_stops_after_the_runs_that_are_on_and_says_how_to_go_on() {
+    let home = Home::new();
+    let (whole, stopped) = (home.at("whole"), home.at("stopped"));
+    let arguments = [&QUICK[..], &["--runs", "150", "--threads", "2", "--resume", "--quiet"]].concat();
+    let mut child = command(&[&arguments[..], &["--out", text(&stopped)]].concat())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let patience = Instant::now();
+    while !stopped.join("runs.jsonl").exists() && patience.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(3));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let mut said = String::new();
+    std::io::Read::read_to_string(&mut child.stderr.take().unwrap(), &mut said).unwrap();
+    assert!(said.contains("of 150 runs, which") && said.contains("go on with --resume"), "{said}");
+    assert!(!stopped.join("table.parquet").exists(), "a table of half a campaign looks whole");
+    for folder in [&whole, &stopped] {
+        assert!(command(&[&arguments[..], &["--out", text(folder)]].concat()).status().unwrap().code().is_some());
+    }
+    assert_eq!(table(&whole), table(&stopped));
+}
+
+#[test]
 fn longer_campaigns_draw_the_same_first_runs_and_what_is_drawn_is_applied() {
     let home = Home::new();
     quick(&home.at("short"), &["--runs", "10"]);

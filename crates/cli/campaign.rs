@@ -1,13 +1,13 @@
 //! `softdock campaign FILE`: thousands of dispersed runs of a scenario, in parallel, resumable.
 
-use crate::{Status, campaign_report};
-use anyhow::bail;
+use crate::{STOPPED, Status, campaign_report};
 use indicatif::{ProgressBar, ProgressStyle};
 use softdock::campaign::{self, Folder, Plan, Row, Shard, Summary, Watch};
 use softdock::scenario;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Arguments of `softdock campaign`.
 #[derive(Debug, clap::Args)]
@@ -85,13 +85,32 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let target = shard.map_or_else(|| out.clone(), |shard| out.join(format!("shard-{shard}")));
     let mut folder = Folder::open(&target, &plan, shard.unwrap_or(Shard::WHOLE), arguments.resume)?;
     let progress = Progress::new(arguments.quiet);
+    stop_when_asked();
     let threads = threads(arguments.threads);
     let summary = campaign::execute(&plan, &mut folder, (shard.unwrap_or(Shard::WHOLE), threads), &progress)?;
     progress.bar.finish_and_clear();
     if summary.is_cut_short {
-        bail!("stopped after {} runs; go on with --resume", summary.done);
+        let own = shard.unwrap_or(Shard::WHOLE);
+        let (done, all) = (summary.done, (0..plan.runs()).filter(|run| own.has(*run)).count());
+        eprintln!("stopped after {done} of {all} runs, which {} keeps; go on with --resume", target.display());
+        return Ok(Status::Stopped);
     }
     conclude(arguments, (&plan, &target, shard), &summary, threads)
+}
+
+/// Whether somebody has pressed Ctrl-C, or a scheduler wants its machine back.
+static IS_CANCELLED: AtomicBool = AtomicBool::new(false);
+
+/// The first signal lets the runs that are on come to their ends, the second ends the command at once; finished runs are kept either way.
+fn stop_when_asked() {
+    let stop = || {
+        if IS_CANCELLED.swap(true, Ordering::Relaxed) {
+            std::process::exit(STOPPED.into());
+        }
+        eprintln!("\nstopping after the runs that are on; once more to stop at once");
+    };
+    // Where no handler can be set a signal ends the command at once, as it always may.
+    ctrlc::set_handler(stop).ok();
 }
 
 /// Name of the default folder.
@@ -219,6 +238,10 @@ impl Progress {
 }
 
 impl Watch for Progress {
+    fn is_cancelled(&self) -> bool {
+        IS_CANCELLED.load(Ordering::Relaxed)
+    }
+
     fn begin(&self, done: usize, missing: usize) {
         self.bar.set_length((done + missing) as u64);
         self.bar.set_position(done as u64);

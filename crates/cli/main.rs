@@ -1,6 +1,6 @@
 //! The `softdock` command: one file per subcommand.
 //!
-//! Exit status: 0 as expected; 1 an expectation failed; 2 usage; 3 bad input; 4 diverged.
+//! Exit status: 0 as expected; 1 an expectation failed; 2 usage; 3 bad input; 4 diverged; 130 stopped by Ctrl-C.
 
 #![allow(clippy::print_stdout)] // a command prints
 
@@ -42,7 +42,7 @@ A first run:
 The viewer is the program `rerun` of the same version as this command's `rerun` crate (0.36): `pip install
 rerun-sdk==0.36.3` or `cargo install rerun-cli --version 0.36.3 --locked`. With it, `--spawn` opens a run as it goes.
 
-Exit status: 0 as expected; 1 an expectation failed; 2 usage; 3 bad input; 4 diverged."
+Exit status: 0 as expected; 1 an expectation failed; 2 usage; 3 bad input; 4 diverged; 130 stopped by Ctrl-C."
 )]
 struct Arguments {
     #[command(subcommand)]
@@ -89,10 +89,13 @@ enum Status {
     AsExpected,
     NotAsExpected,
     Diverged,
+    Stopped,
 }
 
 /// Status of a bad input: a file that is missing, broken or contradicts itself.
 const BAD_INPUT: u8 = 3;
+/// Status of a command that a signal has stopped, as shells have it.
+const STOPPED: u8 = 130;
 
 fn main() -> ExitCode {
     // A reader that has seen enough (`| head`) ends the command quietly, as it ends any other.
@@ -118,6 +121,7 @@ fn main() -> ExitCode {
         Ok(Status::AsExpected) => ExitCode::SUCCESS,
         Ok(Status::NotAsExpected) => ExitCode::from(1),
         Ok(Status::Diverged) => ExitCode::from(4),
+        Ok(Status::Stopped) => ExitCode::from(STOPPED),
         Err(error) => {
             eprintln!("error: {error:#}");
             ExitCode::from(BAD_INPUT)
