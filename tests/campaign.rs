@@ -116,7 +116,8 @@ fn ctrl_c_stops_after_the_runs_that_are_on_and_says_how_to_go_on() {
         .spawn()
         .unwrap();
     let patience = Instant::now();
-    while !stopped.join("runs.jsonl").exists() && patience.elapsed() < Duration::from_secs(60) {
+    let has_begun = || fs::read(stopped.join("runs.jsonl")).is_ok_and(|bytes| bytes.contains(&b'\n'));
+    while !has_begun() && patience.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(3));
     }
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());

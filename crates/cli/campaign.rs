@@ -83,9 +83,9 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
         return Ok(Status::AsExpected);
     }
     let target = shard.map_or_else(|| out.clone(), |shard| out.join(format!("shard-{shard}")));
+    stop_when_asked();
     let mut folder = Folder::open(&target, &plan, shard.unwrap_or(Shard::WHOLE), arguments.resume)?;
     let progress = Progress::new(arguments.quiet);
-    stop_when_asked();
     let threads = threads(arguments.threads);
     let summary = campaign::execute(&plan, &mut folder, (shard.unwrap_or(Shard::WHOLE), threads), &progress)?;
     progress.bar.finish_and_clear();

@@ -1,7 +1,7 @@
 //! The capture envelope: success in bins over two inputs.
 //!
 //! Bins are equally wide between the smallest and the largest draw, about eight runs to a cell on average, or one to
-//! each value of an input that takes few. A cell without a run says nothing, and is not drawn.
+//! each value of an input that takes few again and again (a grid). A cell without a run says nothing, and is not drawn.
 
 use super::{Options, Sensitivity};
 use crate::table::{INPUT, Table};
@@ -10,6 +10,9 @@ use serde::Serialize;
 /// Runs of a cell on average, and the fewest and the most bins of a side.
 const PER_CELL: f64 = 8.0;
 const BINS: (usize, usize) = (2, 10);
+/// Most values of a grid, and how often each is taken on average at least.
+const GRID: usize = 24;
+const AGAIN: usize = 2;
 
 /// Success over two inputs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -22,6 +25,12 @@ pub struct Envelope {
     pub across_edges: Vec<f64>,
     /// Ends of the bins up, one more than bins.
     pub up_edges: Vec<f64>,
+    /// Values across, where each has a bin of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub across_values: Option<Vec<f64>>,
+    /// Values up, where each has a bin of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub up_values: Option<Vec<f64>>,
     /// Rows of cells, from the lowest up; a row runs across.
     pub cells: Vec<Vec<Cell>>,
 }
@@ -50,15 +59,15 @@ pub(super) fn map(table: &Table, options: &Options, sensitivity: &Sensitivity) -
     let points: Vec<(f64, f64, bool)> =
         x.iter().zip(&y).zip(successes).filter_map(|((x, y), s)| Some(((*x)?, (*y)?, s))).collect();
     let side = ((points.len() as f64 / PER_CELL).sqrt().round() as usize).clamp(BINS.0, BINS.1);
-    let across_edges = edges(points.iter().map(|p| p.0).collect(), side)?;
-    let up_edges = edges(points.iter().map(|p| p.1).collect(), side)?;
+    let (across_edges, across_values) = edges(points.iter().map(|p| p.0).collect(), side)?;
+    let (up_edges, up_values) = edges(points.iter().map(|p| p.1).collect(), side)?;
     let mut cells = vec![vec![Cell::default(); across_edges.len() - 1]; up_edges.len() - 1];
     for (x, y, is_success) in points {
         let cell = &mut cells[bin(&up_edges, y)][bin(&across_edges, x)];
         cell.runs += 1;
         cell.successes += usize::from(is_success);
     }
-    Some(Envelope { across, up, across_edges, up_edges, cells })
+    Some(Envelope { across, up, across_edges, up_edges, across_values, up_values, cells })
 }
 
 /// The pair that was asked for, where both are inputs.
@@ -72,22 +81,24 @@ fn strongest(sensitivity: &Sensitivity) -> Option<(String, String)> {
     Some((varying.next()?, varying.next()?))
 }
 
-/// Ends of the bins; none where the values do not vary.
-fn edges(mut values: Vec<f64>, bins: usize) -> Option<Vec<f64>> {
+/// Ends of the bins, and the values where each has its own; none where they do not vary.
+fn edges(mut values: Vec<f64>, bins: usize) -> Option<(Vec<f64>, Option<Vec<f64>>)> {
     values.sort_by(f64::total_cmp);
     let (low, high) = (*values.first()?, *values.last()?);
     if high <= low {
         return None;
     }
+    let count = values.len();
     values.dedup();
-    if values.len() <= bins {
+    if values.len() <= bins || values.len() <= GRID && AGAIN * values.len() <= count {
         // Half-way between values; as far beyond the first and the last.
         let between: Vec<f64> = values.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
         let (first, last) = (between.first()?, between.last()?);
         let ends = (2.0 * low - first, 2.0 * high - last);
-        return Some([ends.0].into_iter().chain(between.iter().copied()).chain([ends.1]).collect());
+        let all = [ends.0].into_iter().chain(between.iter().copied()).chain([ends.1]).collect();
+        return Some((all, Some(values)));
     }
-    Some((0..=bins).map(|k| low + (high - low) * k as f64 / bins as f64).collect())
+    Some(((0..=bins).map(|k| low + (high - low) * k as f64 / bins as f64).collect(), None))
 }
 
 fn bin(edges: &[f64], value: f64) -> usize {
@@ -116,7 +127,12 @@ mod tests {
 
     #[test]
     fn few_values_have_a_bin_each() {
-        assert_eq!(edges(vec![1.0, 3.0, 1.0, 2.0], 8), Some(vec![0.5, 1.5, 2.5, 3.5]));
+        assert_eq!(edges(vec![1.0, 3.0, 1.0, 2.0], 8), Some((vec![0.5, 1.5, 2.5, 3.5], Some(vec![1.0, 2.0, 3.0]))));
+        // A grid keeps its values; as many draws of a continuous number do not make one.
+        let grid: Vec<f64> = (0..100).map(|i| 2f64.powi(i % 10)).collect();
+        assert_eq!(edges(grid, 4).and_then(|e| e.1).map(|v| v.len()), Some(10));
+        let draws: Vec<f64> = (0..20).map(|i| f64::from(i).sqrt()).collect();
+        assert_eq!(edges(draws, 2).map(|e| (e.0.len(), e.1)), Some((3, None)));
         assert_eq!(edges(vec![1.0, 1.0], 8), None);
         assert_eq!((bin(&[0.0, 1.0, 2.0], 0.0), bin(&[0.0, 1.0, 2.0], 1.0), bin(&[0.0, 1.0, 2.0], 2.0)), (0, 1, 1));
     }

@@ -14,6 +14,8 @@ const HEIGHT: f64 = 210.0;
 /// Heights of the map, px: of a row of cells, and the least and the most.
 const ROW: f64 = 38.0;
 const MAP: (f64, f64) = (160.0, 380.0);
+/// Most marks of a grid's values on an axis.
+const MARKS: usize = 10;
 /// Upper ends of the colour classes of a rate.
 const RATES: [f64; 5] = [0.25, 0.5, 0.75, 0.9, 0.99];
 const RATE_CLASSES: [&str; 6] = ["r0", "r1", "r2", "r3", "r4", "r5"];
@@ -40,49 +42,96 @@ pub(super) fn envelope(table: &Table, findings: &Findings) -> String {
     let colours = Colours::of(findings);
     text += &colours.legend();
     let height = (ROW * map.cells.len() as f64).clamp(MAP.0, MAP.1);
-    let across = table.numbers(&format!("{INPUT}{}", map.across)).unwrap_or_default();
-    let up = table.numbers(&format!("{INPUT}{}", map.up)).unwrap_or_default();
+    let [across, up] = Side::of(map);
+    let values = |name: &str, side: &Side<'_>| -> Vec<Option<f64>> {
+        let all = table.numbers(&format!("{INPUT}{name}")).unwrap_or_default();
+        all.into_iter().map(|v| v.map(|v| side.place(v))).collect()
+    };
+    let (x, y) = (values(&map.across, &across), values(&map.up, &up));
     let caption = format!("<b>{}</b> and <b>{}</b>", name(&map.across), name(&map.up));
-    text += "<div class=\"panels\">\n";
-    text += &figure(&format!("{caption} <span>rate of success</span>"), &heat(map, height));
-    let panel = Panel {
+    let blank = Panel {
         across: label(&map.across),
         up: label(&map.up),
         height,
-        across_ends: map.across_edges.first().copied().zip(map.across_edges.last().copied()),
-        up_ends: map.up_edges.first().copied().zip(map.up_edges.last().copied()),
-        layers: dots(table, &across, &up, &colours),
+        across_ends: across.ends(),
+        up_ends: up.ends(),
+        across_marks: across.marks(),
+        up_marks: up.marks(),
         ..Panel::default()
     };
-    text += &figure(&format!("{caption} <span>runs by outcome</span>"), &panel.svg("runs over two inputs by outcome"));
+    text += "<div class=\"panels\">\n";
+    let cells = Panel { layers: heat(map, [&across, &up]), ..blank.clone() };
+    text += &figure(&format!("{caption} <span>rate of success</span>"), &cells.svg("rate of success over two inputs"));
+    let runs = Panel { layers: dots(table, &x, &y, &colours), ..blank };
+    text += &figure(&format!("{caption} <span>runs by outcome</span>"), &runs.svg("runs over two inputs by outcome"));
     text + "</div>\n"
 }
 
-fn heat(map: &Envelope, height: f64) -> String {
+/// An axis of the map: by value, or a step for each value of a grid, however these are spaced.
+struct Side<'a> {
+    edges: &'a [f64],
+    values: Option<&'a [f64]>,
+}
+
+impl<'a> Side<'a> {
+    /// Across and up.
+    fn of(map: &'a Envelope) -> [Self; 2] {
+        [
+            Self { edges: &map.across_edges, values: map.across_values.as_deref() },
+            Self { edges: &map.up_edges, values: map.up_values.as_deref() },
+        ]
+    }
+
+    /// Where a value is drawn.
+    fn place(&self, value: f64) -> f64 {
+        match self.values {
+            Some(values) => values.partition_point(|v| *v < value) as f64 + 0.5,
+            None => value,
+        }
+    }
+
+    /// Ends of the bins as they are drawn.
+    fn bins(&self) -> Vec<[f64; 2]> {
+        match self.values {
+            Some(values) => (0..values.len()).map(|i| [i as f64, (i + 1) as f64]).collect(),
+            None => self.edges.windows(2).map(|e| [e[0], e[1]]).collect(),
+        }
+    }
+
+    fn ends(&self) -> Option<(f64, f64)> {
+        let bins = self.bins();
+        bins.first().map(|b| b[0]).zip(bins.last().map(|b| b[1]))
+    }
+
+    /// The values of a grid, as many as have room.
+    fn marks(&self) -> Option<Vec<(f64, String)>> {
+        let values = self.values?;
+        let every = values.len().div_ceil(MARKS);
+        let of = |(i, value): (usize, &f64)| (i as f64 + 0.5, digits(*value, 3));
+        Some(values.iter().enumerate().step_by(every).map(of).collect())
+    }
+}
+
+fn heat(map: &Envelope, [across, up]: [&Side<'_>; 2]) -> Vec<Layer> {
     let mut boxes: Vec<Vec<(f64, f64, f64, f64)>> = vec![Vec::new(); 2 * RATE_CLASSES.len()];
     let (mut rates, mut counts) = (Vec::new(), Vec::new());
-    for (row, up) in map.cells.iter().zip(map.up_edges.windows(2)) {
-        for (cell, across) in row.iter().zip(map.across_edges.windows(2)) {
+    // Of a grid that was run through once the colours say it all.
+    let is_once = map.cells.iter().flatten().all(|cell| cell.runs <= 1);
+    for (row, up) in map.cells.iter().zip(up.bins()) {
+        for (cell, across) in row.iter().zip(across.bins()) {
             let Some(rate) = cell.rate() else { continue };
             let class = RATES.partition_point(|end| *end <= rate);
-            let class = if cell.runs < FEW { RATE_CLASSES.len() + class } else { class };
+            let class = if cell.runs < FEW && !is_once { RATE_CLASSES.len() + class } else { class };
             boxes[class].push((across[0], across[1], up[0], up[1]));
             let (x, y) = (0.5 * (across[0] + across[1]), 0.5 * (up[0] + up[1]));
-            rates.push((x, y, 0.0, format!("{:.0}", whole_percent(rate))));
-            counts.push((x, y, 13.0, cell.runs.to_string()));
+            if !is_once {
+                rates.push((x, y, 0.0, format!("{:.0}", whole_percent(rate))));
+                counts.push((x, y, 13.0, cell.runs.to_string()));
+            }
         }
     }
     let cells = RATE_CLASSES.iter().chain(&FAINT_CLASSES).zip(boxes).map(|(class, boxes)| Layer::Boxes(class, boxes));
-    let panel = Panel {
-        across: label(&map.across),
-        up: label(&map.up),
-        height,
-        across_ends: map.across_edges.first().copied().zip(map.across_edges.last().copied()),
-        up_ends: map.up_edges.first().copied().zip(map.up_edges.last().copied()),
-        layers: cells.chain([Layer::Texts("cell", rates), Layer::Texts("cellcount", counts)]).collect(),
-        ..Panel::default()
-    };
-    panel.svg("rate of success over two inputs")
+    cells.chain([Layer::Texts("cell", rates), Layer::Texts("cellcount", counts)]).collect()
 }
 
 /// Whole per cent, 0 and 100 for none and all only.

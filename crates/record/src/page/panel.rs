@@ -32,6 +32,10 @@ pub struct Panel {
     pub across_ends: Option<(f64, f64)>,
     /// Ends up; all points where absent.
     pub up_ends: Option<(f64, f64)>,
+    /// Marks across instead of ticks: places and what stands there.
+    pub across_marks: Option<Vec<(f64, String)>>,
+    /// Marks up instead of ticks.
+    pub up_marks: Option<Vec<(f64, String)>>,
     /// Whether the axis across is logarithmic.
     pub logarithmic: bool,
     /// Whether the upward axis is asinh: linear below 1, logarithmic above, both signs.
@@ -104,7 +108,7 @@ impl Panel {
 
     fn add_grid(&self, svg: &mut String, axes: &Axes) {
         let (bottom, top) = (TOP + self.height, TOP);
-        for (tick, label) in axes.across.ticks() {
+        for (tick, label) in self.across_marks.clone().unwrap_or_else(|| axes.across.ticks()) {
             let x = axes.x(tick);
             let _ = write!(
                 svg,
@@ -138,8 +142,8 @@ impl Panel {
     /// Ticks upwards, few enough for the height.
     fn up_ticks(&self, axes: &Axes) -> Vec<(f64, String)> {
         let (bottom, top) = axes.up.pixels;
-        if !self.squashed {
-            let ticks = axes.up.ticks();
+        if self.up_marks.is_some() || !self.squashed {
+            let ticks = self.up_marks.clone().unwrap_or_else(|| axes.up.ticks());
             let every = ((ticks.len() as f64 * TICK_ROOM) / (bottom - top)).ceil().max(1.0) as usize;
             return ticks.into_iter().step_by(every).collect();
         }
