@@ -220,11 +220,11 @@ impl<P: Path> Search<'_, P> {
     }
 
     fn finely(&mut self, a: Sample, b: Sample, halvings: usize) {
-        if self.stays_away(&a, &b) {
-            return;
-        }
         if halvings == 0 {
             return self.split(a, b, self.path.halvings(self.target));
+        }
+        if self.stays_away(&a, &b) {
+            return;
         }
         let middle = sample(self.path, self.target, 0.5 * (a.0 + b.0));
         self.finely(a, middle, halvings - 1);

@@ -152,10 +152,15 @@ impl Narrow {
         self.add_manifold(couple, &axis);
         // Edges that were passed over for a face cross at this height over it, if they are edges of that face at all.
         let crossing = sharpest.gap / axis.n.dot(&sharpest.n) - couple.radii();
-        let found = self.out[before..].iter().map(|t| t.gap).fold(f64::INFINITY, f64::min);
+        let found = self.smallest_gap(before);
         if found > crossing + PREFER_FACE * couple.scale() {
             self.add_manifold(couple, &sharpest);
         }
+    }
+
+    /// The smallest gap of the points from number `first` on, m; infinite where there are none.
+    fn smallest_gap(&self, first: usize) -> f64 {
+        self.out[first..].iter().map(|t| t.gap).fold(f64::INFINITY, f64::min)
     }
 
     /// The contact axis, and what it was before a face was preferred to edges beside it; `None` where the pieces are
@@ -175,7 +180,7 @@ impl Narrow {
     pub(crate) fn add_manifold(&mut self, couple: &Couple, axis: &Axis) {
         let before = self.out.len();
         self.add_overlap(couple, axis);
-        let found = self.out[before..].iter().map(|t| t.gap).fold(f64::INFINITY, f64::min);
+        let found = self.smallest_gap(before);
         // Nothing there, or a rim's deepest place just beside the other's face: the nearest points themselves.
         let round = |convex: &Piece| convex.is_cylinder();
         let tol = COINCIDE * couple.scale();
