@@ -9,7 +9,7 @@
 
 use crate::error::DiagnoseError;
 use crate::hypothesis::{Hypothesis, Tier};
-use crate::linear::{Segment, SegmentLinear, Stage, Steps, Variation, sum_reduced};
+use crate::linear::{Segment, SegmentLinear, Stage, Variation, sum_reduced};
 use crate::plant::{Built, Plant};
 use nalgebra::{DMatrix, DVector};
 use scenario::spec::Effect;
@@ -168,6 +168,8 @@ const NEXT_TO_NOTHING: f64 = 0.3;
 const CREEPING: f64 = 0.05;
 /// Share of what old derivatives promise that a step along them must bring for a further one.
 const SERVES: f64 = 0.3;
+/// Share of the most that the same derivatives have brought below which new ones are taken.
+const FADING: f64 = 0.1;
 /// Most dampings tried for one linearisation.
 const DAMPINGS: usize = 7;
 
@@ -197,18 +199,26 @@ pub fn fit(
         converged: false,
         iterations: 0,
     };
-    let mut steps = Steps::default();
     let mut sizes = first_sizes(&now.set);
     let mut last = Went { damping: 1e-3, ..Went::default() };
+    let mut most = 0.0f64;
     while now.iterations < effort.iterations && !now.converged {
         let before = now.cost;
-        let went = iterate(stage, plant, &mut now, (&mut steps, &mut sizes), (last.damping, effort))?;
+        let effort = Effort { reuse: effort.reuse && !last.wants_fresh, ..effort };
+        let went = iterate(stage, plant, &mut now, &mut sizes, (last.damping, effort))?;
+        // Old derivatives that bring less and less only creep towards where new ones lead at once.
+        let gained = before - now.cost;
+        most = if went.is_fresh { gained } else { gained.max(most) };
+        let went = Went { wants_fresh: went.wants_fresh || gained < FADING * most, ..went };
         // Where the cost is rough the linear model promises what no step brings, however often it is asked.
         let is_idle = before - now.cost < effort.enough(&now).max(CREEPING * went.promised) && !went.was_blind;
         if is_idle && last.is_idle && (went.is_fresh || last.is_fresh) {
             break;
         }
         last = Went { is_idle, ..went };
+    }
+    if last.wants_fresh {
+        now.segments.iter_mut().for_each(|s| s.columns = None);
     }
     Ok(now)
 }
@@ -254,6 +264,8 @@ struct Went {
     was_blind: bool,
     /// Whether it brought next to nothing.
     is_idle: bool,
+    /// Whether its derivatives by the starts lead no further.
+    wants_fresh: bool,
 }
 
 /// One linearisation and the steps tried from it.
@@ -261,12 +273,12 @@ fn iterate(
     stage: &Stage<'_>,
     plant: &Plant,
     now: &mut Fit,
-    (steps, sizes): (&mut Steps, &mut Vec<f64>),
+    sizes: &mut Vec<f64>,
     (mut damping, effort): (f64, Effort),
 ) -> Result<Went, DiagnoseError> {
     let slots = now.set.slots();
     let variations = vary(plant, &now.set, &slots, sizes)?;
-    let linear = stage.linearise(&now.built, &now.segments, &variations, (steps, effort.reuse));
+    let linear = stage.linearise(&now.built, &now.segments, &variations, effort.reuse);
     now.iterations += 1;
     let k = sum_reduced(&linear);
     let n = slots.len();
@@ -277,17 +289,25 @@ fn iterate(
     now.covariance = pseudo_inverse(&a);
     let promised = now.cost - left + (b.transpose() * &now.covariance * &b)[(0, 0)];
     let was_known = effort.reuse && now.segments.iter().any(|s| s.columns.is_some());
-    let went = |damping: f64| Went { damping, promised, is_fresh: !was_known, was_blind, is_idle: false };
+    let went = |damping: f64, wants_fresh: bool| Went {
+        damping,
+        promised,
+        is_fresh: !was_known,
+        was_blind,
+        is_idle: false,
+        wants_fresh,
+    };
     if promised < effort.enough(now) {
         now.converged = !was_blind;
-        return Ok(went(damping));
+        return Ok(went(damping, false));
     }
-    now.segments.iter_mut().zip(&linear).for_each(|(s, l)| s.columns.clone_from(&l.columns));
+    for (segment, linear) in now.segments.iter_mut().zip(&linear) {
+        segment.columns.clone_from(&linear.columns);
+        segment.steps.clone_from(&linear.steps);
+    }
     for trial in 0..DAMPINGS {
         if trial == 2 && was_known {
-            // Old derivatives lead nowhere: new ones next time.
-            now.segments.iter_mut().for_each(|s| s.columns = None);
-            return Ok(went(damping));
+            return Ok(went(damping, true));
         }
         let linear: Vec<SegmentLinear> = linear.iter().map(|l| l.damped(damping)).collect();
         let k = sum_reduced(&linear);
@@ -303,17 +323,15 @@ fn iterate(
                 // A step that had to be shortened says nothing about the end of the way, nor does one along old derivatives.
                 let is_plain = trial == 0 && !was_known;
                 now.converged = !was_blind && is_plain && gained < effort.enough(now);
-                if was_known && (trial > 0 || gained < SERVES * promised) {
-                    now.segments.iter_mut().for_each(|s| s.columns = None);
-                }
-                return Ok(went((damping * 0.1).max(1e-9)));
+                let leads_nowhere = was_known && (trial > 0 || gained < SERVES * promised);
+                return Ok(went((damping * 0.1).max(1e-9), leads_nowhere));
             }
         }
         damping = (damping * 10.0).max(1e-3);
     }
     // No step helps any more: the linear model has no say below the roughness of the cost.
     now.iterations = effort.iterations;
-    Ok(went(damping))
+    Ok(went(damping, false))
 }
 
 /// Longest step of a difference quotient, in widths of the coordinate's range, and what is left of one that leads nowhere.

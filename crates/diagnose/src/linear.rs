@@ -17,7 +17,6 @@ use crate::work::Work;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use scenario::measure::Reading as Measured;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A stretch of a run, with the start that is believed at present.
@@ -35,6 +34,8 @@ pub struct Segment {
     pub weight: f64,
     /// Derivatives by the start, as last computed: they change little from one fit to the next.
     pub columns: Option<Arc<StartColumns>>,
+    /// Steps of the difference quotients that served last.
+    pub steps: Steps,
 }
 
 /// Derivatives of a segment's residual by the coordinates of its start.
@@ -45,6 +46,10 @@ pub struct StartColumns {
     /// A column each.
     pub columns: Vec<DVector<f64>>,
 }
+
+/// Steps of the difference quotients by coordinate of a start; they live from one linearisation to the next.
+#[derive(Clone, Debug, Default)]
+pub struct Steps(Arc<[(Freedom, f64)]>);
 
 /// A changed model and how far it was changed: one column of G.
 #[derive(Clone, Debug)]
@@ -72,14 +77,10 @@ pub struct SegmentLinear {
     pub taken: DMatrix<f64>,
     /// The start's columns.
     pub columns: Option<Arc<StartColumns>>,
+    /// The steps over which they were taken.
+    pub steps: Steps,
     /// H_ss, H_sp and H_pp.
     pub gram: [DMatrix<f64>; 3],
-}
-
-/// Steps of the difference quotients by coordinate of the start; they live from one linearisation to the next.
-#[derive(Clone, Debug, Default)]
-pub struct Steps {
-    sizes: BTreeMap<(usize, usize), f64>,
 }
 
 /// Damping of the scaled H_ss.
@@ -88,6 +89,8 @@ const DAMPING: f64 = 1e-9;
 const WISH: f64 = 0.2;
 /// Root mean square below which a change of the residual is rounding, units of noise.
 const ROUNDING: f64 = 1e-5;
+/// The same below which a variation's step leaves a segment as it is, where others move by tenths of the noise.
+const UNTOUCHED: f64 = 1e-3;
 /// Longest step of a start's coordinate, its own unit.
 const LONGEST: f64 = 1.0;
 /// Range of that within which a step is kept.
@@ -183,28 +186,15 @@ impl Stage<'_> {
         parts.iter().sum()
     }
 
-    /// Linearises every segment about its start, with a column for each variation.
+    /// Linearises every segment about its start, with a column for each variation; `reuse`: the start's columns may be known ones.
     pub fn linearise(
         &self,
         built: &Built,
         segments: &[Segment],
         variations: &[Variation],
-        (steps, reuse): (&mut Steps, bool),
+        reuse: bool,
     ) -> Vec<SegmentLinear> {
-        let first: Vec<Vec<f64>> = segments.iter().map(|s| steps.of(s.run, &freedoms(built, &s.start))).collect();
-        let done: Vec<(SegmentLinear, Vec<f64>)> = segments
-            .par_iter()
-            .zip(first)
-            .map(|(segment, sizes)| {
-                let all = freedoms(built, &segment.start);
-                let known = segment.columns.as_ref().filter(|_| reuse);
-                self.linearise_segment(built, segment, variations, (&all, sizes, known))
-            })
-            .collect();
-        for (segment, (_, sizes)) in segments.iter().zip(&done) {
-            steps.keep(segment.run, sizes);
-        }
-        done.into_iter().map(|(linear, _)| linear).collect()
+        segments.par_iter().map(|segment| self.linearise_segment(built, segment, variations, reuse)).collect()
     }
 
     /// Change of the residual per unit of a variation, from the same start.
@@ -264,8 +254,7 @@ impl Stage<'_> {
     /// The columns of a segment's start: those of the fit that it comes from, where it has them.
     pub fn columns_of(&self, built: &Built, segment: &Segment, r: &DVector<f64>) -> Arc<StartColumns> {
         let all = freedoms(built, &segment.start);
-        let sizes = all.iter().map(Freedom::first_step).collect();
-        self.start_columns_beside(built, segment, r, (&all, sizes), segment.columns.as_ref()).0
+        self.start_columns_beside(built, segment, r, (&all, segment.steps.of(&all)), segment.columns.as_ref()).0
     }
 
     fn linearise_segment(
@@ -273,16 +262,22 @@ impl Stage<'_> {
         built: &Built,
         segment: &Segment,
         variations: &[Variation],
-        (all, sizes, known): (&[Freedom], Vec<f64>, Option<&Arc<StartColumns>>),
-    ) -> (SegmentLinear, Vec<f64>) {
+        reuse: bool,
+    ) -> SegmentLinear {
+        let all = freedoms(built, &segment.start);
         let r = self.residuals(built, segment);
         let (coarse, base) = self.beside(built, segment, &r);
-        let (of_start, sizes) = coarse.start_columns_beside(built, segment, &base, (all, sizes), known);
         let of_model: Vec<DVector<f64>> = variations.par_iter().map(|v| coarse.column(v, segment, &base)).collect();
+        // A flight in which next to nothing of the variations shows has nothing to follow: any columns serve.
+        let moved = |(column, v): (&DVector<f64>, &Variation)| v.step * v.step * column.norm_squared();
+        let is_untouched = of_model.iter().zip(variations).all(|m| moved(m) < UNTOUCHED * UNTOUCHED * r.len() as f64);
+        let known = segment.columns.as_ref().filter(|_| reuse || is_untouched);
+        let (of_start, sizes) =
+            coarse.start_columns_beside(built, segment, &base, (&all, segment.steps.of(&all)), known);
         let s: Vec<&DVector<f64>> = of_start.columns.iter().collect();
         let p: Vec<&DVector<f64>> = of_model.iter().chain(std::iter::once(&r)).collect();
-        let linear = eliminate(&s, &p, all);
-        (SegmentLinear { columns: Some(of_start), ..linear }, sizes)
+        let linear = eliminate(&s, &p, &all);
+        SegmentLinear { columns: Some(of_start), steps: Steps::new(&all, &sizes), ..linear }
     }
 }
 
@@ -330,6 +325,7 @@ pub fn eliminate(s: &[&DVector<f64>], p: &[&DVector<f64>], freedoms: &[Freedom])
         reduced: DMatrix::zeros(0, 0),
         taken: DMatrix::zeros(0, 0),
         columns: None,
+        steps: Steps::default(),
         gram: [h_ss, h_sp, h_pp],
     };
     linear.damped(0.0)
@@ -367,15 +363,20 @@ impl SegmentLinear {
 }
 
 impl Steps {
-    fn of(&self, run: usize, all: &[Freedom]) -> Vec<f64> {
-        let size = |(i, f): (usize, &Freedom)| self.sizes.get(&(run, i)).copied().unwrap_or_else(|| f.first_step());
-        all.iter().enumerate().map(size).collect()
+    /// Those that served.
+    pub(crate) fn new(freedoms: &[Freedom], sizes: &[f64]) -> Self {
+        Self(freedoms.iter().copied().zip(sizes.iter().copied()).collect())
     }
 
-    fn keep(&mut self, run: usize, sizes: &[f64]) {
-        for (i, size) in sizes.iter().enumerate() {
-            self.sizes.insert((run, i), *size);
-        }
+    /// A step for each coordinate: what served, or a first one.
+    pub(crate) fn of(&self, freedoms: &[Freedom]) -> Vec<f64> {
+        let served = |f: &Freedom| self.0.iter().find(|s| s.0 == *f).map_or_else(|| f.first_step(), |s| s.1);
+        freedoms.iter().map(served).collect()
+    }
+
+    /// Whether none are known.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 }
 

@@ -16,7 +16,7 @@ pub(crate) const POOR_WINDOW: f64 = 1.5;
 pub(crate) const NEAR: f64 = 3.0;
 /// Share of the windows, and of whole runs, that may be lost where the model is not doubted for it.
 pub(crate) const FEW: f64 = 0.25;
-const RUNS: f64 = 0.4;
+pub(crate) const RUNS: f64 = 0.4;
 /// Share of a run that must be followed at least.
 const FIRST: f64 = 0.25;
 /// Parts of a run, one of which is lost where the run is.

@@ -5,7 +5,7 @@
 //! A segment whose events do not yet follow the model stays behind without holding up the others.
 
 use crate::fit::Effort;
-use crate::linear::{Segment, SegmentLinear, Stage, StartColumns, eliminate, finite};
+use crate::linear::{Segment, SegmentLinear, Stage, StartColumns, Steps, eliminate, finite};
 use crate::plant::Built;
 use crate::replay::{Span, starts_along};
 use crate::start::{Start, freedoms};
@@ -63,18 +63,21 @@ impl Stage<'_> {
 
     /// Fits every start, so many linearisations at most, until one promises less than a share of the segment's excess.
     pub fn fit_starts(&self, built: &Built, segments: &[Segment], effort: Effort) -> Vec<Settled> {
-        // The first segment finds the steps of the difference quotients for all.
+        // The first segment finds the steps of the difference quotients for all that know none.
         let Some((first, others)) = segments.split_first() else { return Vec::new() };
-        let (first, sizes) = self.fit_start(built, first, &[], effort);
-        let of = |s: &Segment| self.fit_start(built, s, &sizes, effort).0;
-        std::iter::once(first).chain(others.par_iter().map(of).collect::<Vec<_>>()).collect()
+        let first = self.fit_start(built, first, &Steps::default(), effort);
+        let of = |s: &Segment| self.fit_start(built, s, &first.segment.steps, effort);
+        let others: Vec<Settled> = others.par_iter().map(of).collect();
+        std::iter::once(first).chain(others).collect()
     }
 
-    fn fit_start(&self, built: &Built, segment: &Segment, sizes: &[f64], effort: Effort) -> (Settled, Vec<f64>) {
-        let (segment, mut r) = self.nearer(built, segment);
+    /// One start; `steps`: those of the difference quotients where the segment knows none.
+    fn fit_start(&self, built: &Built, segment: &Segment, steps: &Steps, effort: Effort) -> Settled {
+        let (mut segment, mut r) = self.nearer(built, segment);
+        if segment.steps.is_empty() {
+            segment.steps.clone_from(steps);
+        }
         let all = freedoms(built, &segment.start);
-        let mut sizes: Vec<f64> =
-            if sizes.len() == all.len() { sizes.to_vec() } else { all.iter().map(|f| f.first_step()).collect() };
         // What is as near as noise lets it be needs no derivatives.
         let noise = r.len() as f64 + (2.0 * r.len() as f64).sqrt();
         let cost = finite(r.norm_squared());
@@ -83,9 +86,10 @@ impl Stage<'_> {
         let mut damping = 0.0;
         while now.iterations < effort.iterations && !now.converged {
             let (coarse, base) = self.beside(built, &now.segment, &r);
+            let sizes = now.segment.steps.of(&all);
             let (columns, used): (Vec<DVector<f64>>, Vec<f64>) =
                 coarse.quotients(built, &now.segment, &base, (&all, &sizes)).into_iter().unzip();
-            sizes = used;
+            now.segment.steps = Steps::new(&all, &used);
             now.iterations += 1;
             now.shown = columns.iter().filter(|c| c.norm_squared() > 0.0).count();
             now.segment.columns = Some(Arc::new(StartColumns { freedoms: all.clone(), columns }));
@@ -93,7 +97,7 @@ impl Stage<'_> {
                 break;
             }
         }
-        (now, sizes)
+        now
     }
 
     /// Steps along the columns of the last linearisation, as long as the cost falls as these promise (Shamanskii 1967); whether a new
@@ -151,11 +155,11 @@ impl Stage<'_> {
         for share in GROWTH {
             now.span.to = from + share * (to - from);
             if self.count(&now) > ENOUGH * freedoms {
-                now.start = self.fit_start(built, &now, &[], effort).0.segment.start;
+                now.start = self.fit_start(built, &now, &Steps::default(), effort).segment.start;
             }
         }
         now.span.to = to;
-        self.fit_start(built, &now, &[], effort).0
+        self.fit_start(built, &now, &Steps::default(), effort)
     }
 
     /// The first step that lowers the cost: the full one, then more and more damped ones.

@@ -9,7 +9,9 @@ use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::Hypothesis;
 use crate::linear::{Segment, Stage};
 use crate::lost::{self, FEW, NEAR, POOR_WINDOW};
+use crate::pace;
 use crate::plant::{Built, Plant};
+use crate::replay::Pace;
 use crate::stretches::STEEP;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -80,7 +82,7 @@ impl Standing {
         effort: Effort,
     ) -> Result<Self, DiagnoseError> {
         if self.follows() {
-            let whole = fit_in_turns(stage, plant, set, self.whole.segments.clone(), effort)?;
+            let whole = fit_whole(stage, plant, (&self.whole, set), effort)?;
             if !whole.is_significant() {
                 // Nobody looks at windows any more.
                 let windows = Fit { set: whole.set.clone(), built: whole.built.clone(), ..self.windows.clone() };
@@ -127,9 +129,14 @@ impl Standing {
 
     fn climb(&self, stage: &Stage<'_>, plant: &Plant, mut windows: Fit, effort: Effort) -> Result<Self, DiagnoseError> {
         let mut rungs = self.rungs.clone();
+        // What windows add up to over longer ones may need finer steps than each of them does.
+        let mut stage = *stage;
         while let Some(rung) = rungs.first() {
-            let settled = fit(stage, plant, windows.set.frozen(), rung.clone(), Effort::STARTS)?;
-            let settled = Fit { set: windows.set.clone(), ..settled };
+            let begun = begun_as(rung, &windows.segments);
+            let settled = fit(&stage, plant, windows.set.frozen(), begun, Effort::STARTS)?;
+            let settled = Fit { set: windows.set.clone(), covariance: windows.covariance.clone(), ..settled };
+            stage.pace = finer(&stage, &settled);
+            let stage = &stage;
             let tried = fit_robustly(stage, plant, settled, effort)?;
             let found = tried.set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
             stage.work.watch.step(&format!("  windows of {:.3} s: error {:.3}, {found}", length_of(rung), tried.rms()));
@@ -139,6 +146,7 @@ impl Standing {
             windows = tried;
             rungs.remove(0);
         }
+        let stage = &stage;
         let set = windows.set.clone();
         let segments = begun_as(&self.whole.segments, &windows.segments);
         // Where windows had to be shortened, whole runs are far off until the longest windows follow well.
@@ -148,8 +156,10 @@ impl Standing {
             true => self.left_far(&windows, segments),
             false => Fit { set: set.clone(), ..self.followed(stage, plant, set.frozen(), &segments)? },
         };
+        let stage = &Stage { pace: if is_far { stage.pace } else { finer(stage, &whole) }, ..*stage };
         let mut standing = Self { windows, whole, rungs, reach: self.reach };
-        if !standing.follows() && !is_far && standing.windows.rms() <= FAIR {
+        let is_fair = standing.windows.rms() <= FAIR || lost::calc_share(stage, &standing.windows) <= lost::FEW;
+        if !standing.follows() && !is_far && is_fair {
             standing = standing.along_the_valley(stage, plant)?;
         }
         let set = standing.windows.set.clone();
@@ -264,15 +274,42 @@ pub fn follow_with(
     fit(stage, plant, first.set, first.segments, effort)
 }
 
-/// Whole runs that may begin as the longest window does with which they begin.
-fn begun_as(whole: &[Segment], windows: &[Segment]) -> Vec<Segment> {
-    let of = |run: &Segment| {
-        let first = windows.iter().filter(|w| w.run == run.run && w.span.from == run.span.from);
+/// Longer stretches that may begin as the longest window does with which they begin.
+fn begun_as(longer: &[Segment], windows: &[Segment]) -> Vec<Segment> {
+    let of = |stretch: &Segment| {
+        let first = windows.iter().filter(|w| w.run == stretch.run && w.span.from == stretch.span.from);
         let longest = first.max_by(|a, b| a.span.to.total_cmp(&b.span.to));
-        let guess = longest.map_or_else(|| Arc::clone(&run.guess), |w| Arc::new(w.start.clone()));
-        Segment { guess, ..run.clone() }
+        let guess = longest.map_or_else(|| Arc::clone(&stretch.guess), |w| Arc::new(w.start.clone()));
+        Segment { guess, ..stretch.clone() }
     };
-    whole.iter().map(of).collect()
+    longer.iter().map(of).collect()
+}
+
+/// Whole runs fitted; where a few of them stand in wrong valleys these do not drag the others along.
+fn fit_whole(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    (whole, set): (&Fit, EffectSet),
+    effort: Effort,
+) -> Result<Fit, DiagnoseError> {
+    let settled = fit(stage, plant, set.frozen(), whole.segments.clone(), Effort { iterations: 0, ..effort })?;
+    let share = lost::calc_share(stage, &settled);
+    if share > 0.0 && share <= lost::RUNS {
+        return fit_robustly(stage, plant, Fit { set, ..settled }, effort);
+    }
+    fit_in_turns(stage, plant, set, whole.segments.clone(), effort)
+}
+
+/// Steps that suit a model over what is near it.
+fn finer(stage: &Stage<'_>, fit: &Fit) -> Pace {
+    let near = fit.segments.par_iter().filter(|s| lost::is_near(stage, &fit.built, s)).cloned();
+    let near: Vec<Segment> = near.collect();
+    let found = pace::refine(stage, &fit.built, &near);
+    if found.pace != stage.pace {
+        let Pace { step, free } = found.pace;
+        stage.work.watch.step(&format!("  steps of {step:.3e} s, {free:.3e} s in free flight"));
+    }
+    found.pace
 }
 
 /// A fit whose starts are begun anew as long as that finds lower valleys for some.

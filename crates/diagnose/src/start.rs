@@ -18,7 +18,7 @@ const STRONGER: f64 = 1.5;
 const INSTANT: f64 = 1e-7;
 
 /// Where a replay starts.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Start {
     /// Time, s.
     pub time: f64,

@@ -1,14 +1,16 @@
 //! The stretches of a recording that a search looks at beside whole runs.
 //!
 //! Windows are shortened until the nominal model follows them, for a screen is linear; those in which most is amiss and an even selection of
-//! the others speak for all. What is slow shows in long stretches only: flights between touches, which no event cuts, or thirds of runs.
+//! the others speak for all. What is slow shows in long stretches only: flights between touches, which no event cuts, or thirds of runs. Where
+//! runs fly and windows had to be shortened, flights with the beginning of the next touch take the windows' place ([`crate::approaches`]).
 
+use crate::approaches::{Flight, approaches, find_flights, is_sustained, lengths};
 use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::guess::guess;
-use crate::linear::{Segment, Stage, windows};
+use crate::linear::{Segment, Stage, Steps, windows};
 use crate::plant::{Built, Plant};
-use crate::replay::{Span, touches_in};
+use crate::replay::Span;
 use crate::tape::Tape;
 use rayon::prelude::*;
 use record::Role;
@@ -37,7 +39,7 @@ pub(crate) fn cut(built: &Built, tapes: &[Tape], window: Option<f64>, wanted: im
 
 fn guessed(built: &Built, tapes: &[Tape], run: usize, span: Span) -> Segment {
     let start = guess(built, &tapes[run], span.from);
-    Segment { run, span, guess: Arc::new(start.clone()), start, weight: 1.0, columns: None }
+    Segment { run, span, guess: Arc::new(start.clone()), start, weight: 1.0, columns: None, steps: Steps::default() }
 }
 
 /// Whole runs, from the starts of their first windows.
@@ -72,28 +74,42 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
     }
     some = representative(stage, &some, many);
     let mut first = joined(&nominal.segments, stage.tapes);
-    let flights = flights(stage, nominal);
-    // What lies within flights is seen in these.
-    if !flights.is_empty() {
+    let flights = find_flights(stage, nominal);
+    if flights.is_empty() && !(rungs.is_empty() && nominal.rms() < FAR) {
+        return Ok(Stretches { windows: some, rungs, whole: first });
+    }
+    let long = long(stage, plant, nominal, &flights)?;
+    let begins = |s: &&Segment| s.span.from == stage.tapes[s.run].span.0;
+    for begun in joined(&long.segments.iter().filter(begins).cloned().collect::<Vec<_>>(), stage.tapes) {
+        first.iter_mut().filter(|s| s.run == begun.run).for_each(|s| s.clone_from(&begun));
+    }
+    if flights.is_empty() {
+        return Ok(Stretches { windows: together(some, long), rungs, whole: first });
+    }
+    if rungs.is_empty() {
+        // What lies within flights is seen in these.
         let within = |s: &Segment| {
             flights.iter().any(|f| f.run == s.run && f.span.from <= s.span.from && s.span.to <= f.span.to)
         };
         let touching: Vec<Segment> = some.segments.iter().filter(|s| !within(s)).cloned().collect();
-        if !touching.is_empty() {
-            some = of_segments(stage, &some, touching);
-        }
+        let some = if touching.is_empty() { some } else { of_segments(stage, &some, touching) };
+        return Ok(Stretches { windows: together(some, long), rungs, whole: first });
     }
-    if !flights.is_empty() || rungs.is_empty() && nominal.rms() < FAR {
-        let long = long(stage, plant, nominal, flights)?;
-        let begins = |s: &&Segment| s.span.from == stage.tapes[s.run].span.0;
-        for begun in joined(&long.segments.iter().filter(begins).cloned().collect::<Vec<_>>(), stage.tapes) {
-            first.iter_mut().filter(|s| s.run == begun.run).for_each(|s| s.clone_from(&begun));
-        }
-        // What is slow keeps its weight as windows grow.
-        rungs.iter_mut().for_each(|rung| rung.extend(long.segments.iter().cloned()));
-        some = together(some, long);
-    }
-    Ok(Stretches { windows: some, rungs, whole: first })
+    let of_length = |length: f64| -> Vec<Segment> {
+        let begun = |(run, span): (usize, Span)| {
+            let flown = long.segments.iter().find(|s| s.run == run && s.span.from == span.from);
+            let flown = flown.map(|s| Segment { span, guess: Arc::new(s.start.clone()), columns: None, ..s.clone() });
+            flown.unwrap_or_else(|| guessed(&nominal.built, stage.tapes, run, span))
+        };
+        approaches(&flights, stage.tapes, length).into_iter().map(begun).collect()
+    };
+    let near = fit(stage, plant, EffectSet::default(), of_length(length), Effort::STARTS)?;
+    stage.work.watch.step(&format!("flights and {length:.3} s of the touches after them: error {:.3}", near.rms()));
+    let lasting: Vec<Segment> =
+        some.segments.iter().filter(|s| is_sustained(s, &flights, 2.0 * window)).cloned().collect();
+    let windows = if lasting.is_empty() { near } else { together(near, of_segments(stage, &some, lasting)) };
+    let rungs = lengths(length, stage.tapes).into_iter().map(of_length).collect();
+    Ok(Stretches { windows, rungs, whole: first })
 }
 
 /// Root mean square over the segments that are missed: a few among many that are followed count like many.
@@ -161,47 +177,19 @@ fn of_segments(stage: &Stage<'_>, fit: &Fit, segments: Vec<Segment>) -> Fit {
 }
 
 /// Flights between touches where there are some, else thirds of the runs, also where an event later in the run hides what is slow.
-fn long(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, flights: Vec<Segment>) -> Result<Fit, DiagnoseError> {
+fn long(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, flights: &[Flight]) -> Result<Fit, DiagnoseError> {
     if flights.is_empty() {
         let third = stage.tapes.iter().map(|t| (t.span.1 - t.span.0) / 3.0).fold(0.0, f64::max);
         let thirds = cut(&nominal.built, stage.tapes, Some(third), |t| t.role == Role::Fit);
         let thirds = fit(stage, plant, EffectSet::default(), thirds, Effort::STARTS)?;
         return Ok(of_spokesmen(stage, &thirds, THIRDS));
     }
+    let flights = flights.iter().map(|f| guessed(&nominal.built, stage.tapes, f.run, f.span)).collect();
     fit(stage, plant, EffectSet::default(), flights, Effort::STARTS)
-}
-
-/// The stretches of at least a window in which nothing touches, as the windows' replays tell; empty where nothing ever or always touches.
-fn flights(stage: &Stage<'_>, windows: &Fit) -> Vec<Segment> {
-    let of = |s: &Segment| touches_in(&windows.built, &stage.tapes[s.run], &s.start, s.span, stage.pace);
-    let touched: Vec<Vec<Span>> = windows.segments.par_iter().map(of).collect();
-    if touched.iter().all(Vec::is_empty) {
-        return Vec::new();
-    }
-    let mut spans: Vec<(usize, Span)> = Vec::new();
-    let mut runs: Vec<usize> = windows.segments.iter().map(|s| s.run).collect();
-    runs.dedup();
-    for run in runs {
-        let of_run = windows.segments.iter().zip(&touched).filter(|(s, _)| s.run == run);
-        let least = of_run.clone().map(|(s, _)| s.span.to - s.span.from).fold(f64::INFINITY, f64::min);
-        let (mut from, end) = stage.tapes[run].span;
-        let closed: Vec<Span> = of_run.flat_map(|(_, touched)| touched.iter().copied()).collect();
-        for touch in closed.iter().chain(std::iter::once(&Span { from: end, to: end })) {
-            // The model may be late or early by a little.
-            if touch.from - from > least {
-                let margin = if touch.from < end { AHEAD * least } else { 0.0 };
-                spans.push((run, Span { from, to: touch.from - margin }));
-            }
-            from = touch.to + AHEAD * least;
-        }
-    }
-    spans.into_iter().map(|(run, span)| guessed(&windows.built, stage.tapes, run, span)).collect()
 }
 
 /// Thirds of runs that speak for all: the worst, and an even selection.
 const THIRDS: (usize, usize) = (2, 3);
-/// Share of a window that a flight keeps away from touches.
-const AHEAD: f64 = 0.02;
 
 fn together(a: Fit, b: Fit) -> Fit {
     Fit {

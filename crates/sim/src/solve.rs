@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::pivots;
 use crate::workspace::Workspace;
 use multibody::{Kinematics, Tree};
-use spatial::{SpatialMatrix, Twist, Vec3, Wrench};
+use spatial::{Mat3, SpatialMatrix, Twist, Vec3, Wrench};
 
 /// Row of a body's freedom that its base's guide holds.
 const HELD: usize = usize::MAX;
@@ -47,12 +47,14 @@ impl Islands {
         }
     }
 
-    /// Groups the vehicles that touch and numbers their freedoms.
+    /// Groups the vehicles that act on each other within the step and numbers their freedoms.
     pub fn regroup(&mut self, model: &Model, touches: &[Touch], couplings: &[Coupling]) {
         for (i, group) in self.group.iter_mut().enumerate() {
             *group = i;
         }
-        let touching = touches.iter().map(|t| [t.body_a, t.body_b]);
+        // A force that does not answer to the gains ties nothing together: so it is in flight and in every stage of Runge–Kutta.
+        let ties = |t: &&Touch| t.out.g != Mat3::zeros() || model.laws[t.pair as usize].pivot.is_some();
+        let touching = touches.iter().filter(ties).map(|t| [t.body_a, t.body_b]);
         for [body_a, body_b] in touching.chain(couplings.iter().map(|c| c.bodies)) {
             if let (Some(&(a, _)), Some(&(b, _))) = (model.owners.get(body_a), model.owners.get(body_b)) {
                 let (low, high) = (self.group[a].min(self.group[b]), self.group[a].max(self.group[b]));

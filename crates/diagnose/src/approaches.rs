@@ -1,0 +1,135 @@
+//! Approaches: flights with the beginning of the touch that ends them.
+//!
+//! What happens in a touch is short and steep, and a window that begins in its midst must guess how deep and how bent everything is: there are
+//! many wrong valleys in that. A flight tells where everything is and how it moves, without any contact's memory, as closely as its length
+//! allows. So where runs fly from touch to touch the continuation goes by the length of the touch that is looked at after a flight, not by
+//! the length of windows, until a stretch reaches into the next touch, whose own approach then ends.
+
+use crate::fit::Fit;
+use crate::linear::{Segment, Stage};
+use crate::replay::{Span, touches_in};
+use crate::tape::Tape;
+use rayon::prelude::*;
+
+/// A stretch in which nothing touches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Flight {
+    /// Index of the run.
+    pub run: usize,
+    /// The stretch; it keeps away from touches by a margin, for the model may be late or early by a little.
+    pub span: Span,
+    /// When the touch begins that ends it, s; none where the run ends first.
+    pub touch: Option<f64>,
+}
+
+/// Share of a window that a flight keeps away from touches.
+const AHEAD: f64 = 0.02;
+/// Growth of the touch that is looked at from one rung to the next.
+const LONGER: f64 = 4.0;
+/// Share of the longest run up to which approaches grow.
+const LONGEST: f64 = 0.5;
+
+/// The flights of at least a window, as the windows' replays tell, run by run and in order; empty where nothing ever or always touches.
+pub(crate) fn find_flights(stage: &Stage<'_>, windows: &Fit) -> Vec<Flight> {
+    let of = |s: &Segment| touches_in(&windows.built, &stage.tapes[s.run], &s.start, s.span, stage.pace);
+    let touched: Vec<Vec<Span>> = windows.segments.par_iter().map(of).collect();
+    if touched.iter().all(Vec::is_empty) {
+        return Vec::new();
+    }
+    let mut flights = Vec::new();
+    let mut runs: Vec<usize> = windows.segments.iter().map(|s| s.run).collect();
+    runs.dedup();
+    for run in runs {
+        let of_run = windows.segments.iter().zip(&touched).filter(|(s, _)| s.run == run);
+        let least = of_run.clone().map(|(s, _)| s.span.to - s.span.from).fold(f64::INFINITY, f64::min);
+        let (mut from, end) = stage.tapes[run].span;
+        let closed: Vec<Span> = of_run.flat_map(|(_, touched)| touched.iter().copied()).collect();
+        for touch in closed.iter().chain(std::iter::once(&Span { from: end, to: end })) {
+            if touch.from - from > least {
+                let ends = touch.from < end;
+                let margin = if ends { AHEAD * least } else { 0.0 };
+                let span = Span { from, to: touch.from - margin };
+                flights.push(Flight { run, span, touch: ends.then_some(touch.from) });
+            }
+            from = touch.to + AHEAD * least;
+        }
+    }
+    flights
+}
+
+/// Flights with as much of the touches after them; a touch that is reached from an earlier flight needs no approach of its own.
+pub(crate) fn approaches(flights: &[Flight], tapes: &[Tape], length: f64) -> Vec<(usize, Span)> {
+    let mut found: Vec<(usize, Span)> = Vec::new();
+    for flight in flights {
+        let Flight { run, span, touch } = *flight;
+        let reached = found.last().filter(|f| f.0 == run).map_or(f64::NEG_INFINITY, |f| f.1.to);
+        match touch {
+            Some(touch) if touch > reached => {
+                found.push((run, Span { from: span.from, to: (touch + length).min(tapes[run].span.1) }));
+            }
+            // Half of a flight at least tells something of its own.
+            None if reached < 0.5 * (span.from + span.to) => {
+                found.push((run, Span { from: span.from.max(reached), to: span.to }));
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Lengths of touches to look at after those of the shortest approaches, s.
+pub(crate) fn lengths(first: f64, tapes: &[Tape]) -> Vec<f64> {
+    let longest = tapes.iter().map(|t| t.span.1 - t.span.0).fold(0.0, f64::max);
+    let all = std::iter::successors(Some(LONGER * first), |l| Some(LONGER * l));
+    all.take_while(|l| *l < LONGEST * longest).collect()
+}
+
+/// Whether most of what is looked at lies in a touch long after it began: no approach shows it.
+pub(crate) fn is_sustained(window: &Segment, flights: &[Flight], after: f64) -> bool {
+    let of_run = flights.iter().filter(|f| f.run == window.run);
+    let is_flown = of_run.clone().any(|f| f.span.from < window.span.to && window.span.from < f.span.to);
+    let began = of_run.filter_map(|f| f.touch).filter(|t| *t <= window.span.from).fold(f64::NEG_INFINITY, f64::max);
+    !is_flown && window.span.from > began + after
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use record::Role;
+
+    fn flown() -> (Vec<Tape>, Vec<Flight>) {
+        let mut tape = Tape::assemble(("run", Role::Fit), Vec::new(), Vec::new());
+        tape.span = (0.0, 5.0);
+        let flight = |from: f64, to: f64, touch| Flight { run: 0, span: Span { from, to }, touch };
+        (vec![tape], vec![flight(0.0, 0.49, Some(0.5)), flight(0.6, 1.39, Some(1.4)), flight(1.6, 5.0, None)])
+    }
+
+    #[test]
+    fn short_approaches_end_in_their_own_touch_long_ones_take_the_next_with_them() {
+        let (tapes, flights) = flown();
+        let spans = |length| approaches(&flights, &tapes, length).iter().map(|s| (s.1.from, s.1.to)).collect::<Vec<_>>();
+        assert_eq!(spans(0.125), [(0.0, 0.625), (0.6, 1.525), (1.6, 5.0)]);
+        assert_eq!(spans(0.5), [(0.0, 1.0), (0.6, 1.9), (1.9, 5.0)]);
+        assert_eq!(spans(2.0), [(0.0, 2.5), (2.5, 5.0)]);
+        assert_eq!(spans(4.0), [(0.0, 4.5)]);
+        assert_eq!(lengths(0.125, &tapes), [0.5, 2.0]);
+    }
+
+    #[test]
+    fn what_lasts_is_not_seen_by_approaches() {
+        let (tapes, mut flights) = flown();
+        flights.pop();
+        let guess = std::sync::Arc::default();
+        let window = |from: f64| Segment {
+            run: 0,
+            span: Span { from, to: from + 0.1 },
+            start: Default::default(),
+            guess: std::sync::Arc::clone(&guess),
+            weight: 1.0,
+            columns: None,
+            steps: Default::default(),
+        };
+        assert!(!is_sustained(&window(1.45), &flights, 1.0) && !is_sustained(&window(0.8), &flights, 0.0));
+        assert!(is_sustained(&window(3.0), &flights, 1.0) && tapes.len() == 1);
+    }
+}
