@@ -9,14 +9,15 @@ use crate::standing::follow_with;
 use crate::stretches::{cut, joined};
 use crate::tape::Tape;
 use nalgebra::DVector;
+use rayon::prelude::*;
 use record::Role;
 
 /// A model with the starts that suit it best, and what its predictions are off by.
 #[derive(Clone, Debug)]
 pub struct Prediction {
-    /// The starts, segment by segment.
+    /// The starts, segment by segment; its cost is that of the samples which these were estimated from.
     pub fit: Fit,
-    /// Residuals of each segment, units of noise.
+    /// Residuals of all samples of each segment, units of noise.
     pub residuals: Vec<DVector<f64>>,
 }
 
@@ -44,24 +45,31 @@ pub struct Scalar {
     pub residual: f64,
 }
 
-/// Estimates the starts of every run under both models, from those that the search has found; `follows`: whole runs follow the corrected one.
+/// Estimates the starts of every run under both models, from those that the search has found, and judges all samples by them; `follows`: whole
+/// runs follow the corrected one.
+///
+/// `stage` has the samples that starts are estimated from, `all` those that are judged: a start that thousands of samples tell is told no
+/// worse by every fourth of them.
 pub fn judge(
-    stage: &Stage<'_>,
+    (stage, all): (&Stage<'_>, &Stage<'_>),
     plant: &Plant,
-    (nominal, found): (&Fit, &Fit),
+    (nominal, found): ([&Fit; 2], &Fit),
     (window, follows): (f64, bool),
 ) -> Result<Judgement, DiagnoseError> {
     let predict =
-        |fit: Fit| Prediction { residuals: fit.segments.iter().map(|s| stage.residuals(&fit.built, s)).collect(), fit };
+        |fit: Fit| Prediction { residuals: fit.segments.par_iter().map(|s| all.residuals(&fit.built, s)).collect(), fit };
     let is_last = |known: &Fit| known.set.members.len() == found.set.members.len();
     let of = |known: &Fit| -> Result<(Prediction, Prediction), DiagnoseError> {
         let set = known.set.frozen();
         let built = plant.build(&set.effects())?;
+        // What a wrong model is off by takes no more exact starts.
+        let effort = if is_last(known) { Effort::JUDGED } else { Effort { iterations: GLANCES, ..Effort::JUDGED } };
         let mut windows = cut(&built, stage.tapes, Some(window), |_| true);
         begin_from(&mut windows, &known.segments);
         let first = |windows: &[Segment]| joined(windows, stage.tapes);
+        let of_runs = if is_last(known) { found } else { nominal[1] };
         let restarted = |windows: Vec<Segment>| -> Result<Fit, DiagnoseError> {
-            let windowed = fit(stage, plant, set.clone(), windows, Effort::JUDGED)?;
+            let windowed = fit(stage, plant, set.clone(), windows, effort)?;
             if !is_last(known) || windowed.rms() >= PLAUSIBLE {
                 return Ok(windowed);
             }
@@ -71,12 +79,16 @@ pub fn judge(
         if !follows {
             // Where whole runs go astray their starts are found in windows, if anywhere.
             let windowed = restarted(windows)?;
-            let whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), Effort::JUDGED)?;
+            let mut runs = first(&windowed.segments);
+            if !is_last(known) {
+                begin_from(&mut runs, &of_runs.segments);
+            }
+            let whole = follow_with(stage, plant, set.clone(), &runs, effort)?;
             return Ok((predict(windowed), predict(whole)));
         }
         let mut runs = first(&windows);
-        begin_from(&mut runs, &known.segments);
-        let mut whole = follow_with(stage, plant, set.clone(), &runs, Effort::JUDGED)?;
+        begin_from(&mut runs, &of_runs.segments);
+        let mut whole = follow_with(stage, plant, set.clone(), &runs, effort)?;
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
         if is_last(known) && known.rms() < PLAUSIBLE {
             let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED, lost::POOR_RUN));
@@ -89,7 +101,7 @@ pub fn judge(
         stage.along(&built, &followed, &mut windows);
         let mut windowed = restarted(windows)?;
         if whole.rms() >= lost::NEAR && is_last(known) {
-            whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), Effort::JUDGED)?;
+            whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), effort)?;
             let found = near(&whole);
             if found.len() > followed.len() {
                 stage.along(&built, &found, &mut windowed.segments);
@@ -98,20 +110,24 @@ pub fn judge(
         }
         Ok((predict(windowed), predict(whole)))
     };
-    let before = of(nominal)?;
+    let before = of(nominal[0])?;
     let after = if found.set.members.is_empty() { before.clone() } else { of(found)? };
     Ok(Judgement { windowed: [before.0, after.0], whole: [before.1, after.1] })
 }
 
+/// Linearisations of the starts of a model that is known to be wrong.
+const GLANCES: usize = 2;
 /// Root mean square over whole runs up to which starts are doubted before the model is.
 const PLAUSIBLE: f64 = 8.0;
 
 /// Takes the starts of segments that are known already.
 fn begin_from(segments: &mut [Segment], known: &[Segment]) {
     for segment in segments {
-        let same = |k: &&Segment| k.run == segment.run && (k.span.from - segment.span.from).abs() < 1e-9;
-        if let Some(known) = known.iter().find(same) {
-            segment.start.clone_from(&known.start);
+        let begins_alike = |k: &&Segment| k.run == segment.run && (k.span.from - segment.span.from).abs() < 1e-9;
+        let Some(known) = known.iter().find(begins_alike) else { continue };
+        segment.start.clone_from(&known.start);
+        if (known.span.to - segment.span.to).abs() < 1e-9 && known.weight == segment.weight {
+            (segment.columns, segment.steps) = (known.columns.clone(), known.steps.clone());
         }
     }
 }

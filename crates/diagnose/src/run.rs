@@ -94,7 +94,7 @@ pub fn diagnose(
         nominal.rms(),
         whole.rms()
     ));
-    let standing = Standing::new(&stage, windows, whole, rungs);
+    let standing = Standing::new(&stage, windows, whole.clone(), rungs);
     let candidates = |stage: &Stage<'_>, now: &Fit| {
         let facts = Facts::new(&now.built, &tapes);
         let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
@@ -102,15 +102,21 @@ pub fn diagnose(
     };
     let (standing, attempts) = search(&mut stage, &plant, standing, &candidates, &LIMITS)?;
     clock.stage("fit to all samples", 0.75);
-    let stage = Stage { tapes: &tapes, ..stage };
     let follows = standing.follows();
+    let discretisation = suited(&stage, &standing, discretisation);
+    stage.pace = discretisation.pace;
+    let (thin, stage) = (stage, Stage { tapes: &tapes, ..stage });
     let effects = standing.judge().set.clone();
     let segments = if follows { standing.whole.segments } else { standing.windows.segments };
     let segments = segments.into_iter().map(|s| Segment { columns: None, weight: 1.0, ..s }).collect();
-    let found = fit_in_turns(&stage, &plant, effects, segments, FINAL)?;
+    let mut found = fit_in_turns(&thin, &plant, effects, segments, FINAL)?;
+    if found.segments.iter().any(|s| stage.count(s) > thin.count(s)) {
+        let segments = found.segments.into_iter().map(|s| Segment { columns: None, ..s }).collect();
+        found = fit(&stage, &plant, found.set, segments, POLISH)?;
+    }
     clock.stage("predict every run", 0.85);
-    let judgement = judge(&stage, &plant, (&nominal, &found), (window, follows))?;
-    let left = left_by(&stage, &plant, (&nominal, &located), &judgement)?;
+    let judgement = judge((&thin, &stage), &plant, ([&nominal, &whole], &found), (window, follows))?;
+    let left = left_by(&thin, &plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
     let verdict = verdict(&judgement, &found, follows);
     // What explains nothing is not told, nor how sure its numbers are.
@@ -137,6 +143,18 @@ pub fn diagnose(
     Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
 }
 
+/// Steps that suit the corrected model over what it is judged by: what was found may be faster than what the nominal model has.
+fn suited(stage: &Stage<'_>, standing: &Standing, chosen: Discretisation) -> Discretisation {
+    let judged = standing.judge();
+    if judged.set.members.is_empty() || judged.rms() > NEAR {
+        return Discretisation { pace: stage.pace, ..chosen };
+    }
+    let found = pace::refine(stage, &judged.built, &judged.segments);
+    let Pace { step, free } = found.pace;
+    stage.work.watch.step(&format!("steps of {step:.3e} s, {free:.3e} s in free flight: halving moves {:.1e}", found.worst));
+    found
+}
+
 /// What the corrected model leaves at the places that are drawn, as forces on the nominal one.
 fn left_by(
     stage: &Stage<'_>,
@@ -151,7 +169,10 @@ fn left_by(
     let residuals_of = |segment: &Segment| {
         let is_same = |s: &Segment| s.run == segment.run && s.span == segment.span;
         let at = corrected.fit.segments.iter().position(is_same);
-        at.map_or_else(|| stage.residuals(&nominal.built, segment), |i| corrected.residuals[i].clone())
+        at.map_or_else(
+            || stage.residuals(&nominal.built, segment),
+            |i| stage.residuals(&corrected.fit.built, &corrected.fit.segments[i]),
+        )
     };
     let segments: Vec<Segment> = nominal.segments.iter().map(|s| Segment { columns: None, ..s.clone() }).collect();
     let residuals: Vec<_> = segments.iter().map(residuals_of).collect();
@@ -162,8 +183,9 @@ fn left_by(
     locate_in(stage, plant, &nominal, places, Some(&residuals)).map(Some)
 }
 
-/// The last fit, of all samples.
+/// The last fit, and what is left to do where there are more samples than it looked at.
 const FINAL: Effort = Effort { iterations: 6, share: 1e-5, floor: 0.02, reuse: true };
+const POLISH: Effort = Effort { iterations: 2, ..FINAL };
 /// Samples of a channel of a run that are enough to search by.
 const ENOUGH: usize = 3000;
 

@@ -30,6 +30,11 @@ const ENOUGH: usize = 10;
 /// Promised fall of a segment's cost below which its start has converged, variances of noise.
 const NEXT_TO_NOTHING: f64 = 0.1;
 
+/// Whether columns are those of a residual of this length.
+fn is_of(known: &StartColumns, r: &DVector<f64>) -> bool {
+    known.columns.iter().all(|c| c.len() == r.len())
+}
+
 /// A segment with its start at its best.
 #[derive(Clone, Debug)]
 pub struct Settled {
@@ -84,6 +89,11 @@ impl Stage<'_> {
         let converged = effort.share >= Effort::JUDGED.share && cost < noise;
         let mut now = Settled { segment, cost, shown: 0, iterations: 0, converged };
         let mut damping = 0.0;
+        // A start that was at its best may be so still: then old derivatives promise nothing.
+        let known = now.segment.columns.as_ref().filter(|k| k.freedoms == all && is_of(k, &r));
+        if effort.share >= Effort::JUDGED.share && effort.iterations > 0 && !now.converged && known.is_some() {
+            self.descend(built, &mut now, &mut r, (&mut damping, effort.share));
+        }
         while now.iterations < effort.iterations && !now.converged {
             let (coarse, base) = self.beside(built, &now.segment, &r);
             let sizes = now.segment.steps.of(&all);

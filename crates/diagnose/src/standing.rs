@@ -120,8 +120,9 @@ impl Standing {
         mut windows: Fit,
         effort: Effort,
     ) -> Result<Self, DiagnoseError> {
-        // What short windows can tell they tell before longer ones, in which there are more wrong valleys, are asked.
-        if !self.rungs.is_empty() {
+        // What short windows can tell they tell before longer ones, in which there are more wrong valleys, are asked; where all are near
+        // already, longer ones tell it better.
+        if !self.rungs.is_empty() && lost::calc_share(stage, &windows) > 0.0 {
             windows = fit_in_turns(stage, plant, windows.set, windows.segments, effort)?;
         }
         self.climb(stage, plant, windows, effort)
@@ -133,7 +134,7 @@ impl Standing {
         let mut stage = *stage;
         while let Some(rung) = rungs.first() {
             let begun = begun_as(rung, &windows.segments);
-            let settled = fit(&stage, plant, windows.set.frozen(), begun, Effort::STARTS)?;
+            let settled = settled(&stage, plant, windows.set.frozen(), begun)?;
             let settled = Fit { set: windows.set.clone(), covariance: windows.covariance.clone(), ..settled };
             stage.pace = finer(&stage, &settled);
             let stage = &stage;
@@ -222,8 +223,11 @@ impl Standing {
         set: EffectSet,
         segments: &[Segment],
     ) -> Result<Fit, DiagnoseError> {
-        let whole = follow(stage, plant, set, segments)?;
-        if self.reach > STEEP || whole.rms() < NEAR {
+        let whole = match self.reach > STEEP {
+            true => return follow(stage, plant, set, segments),
+            false => settled(stage, plant, set, segments.to_vec())?,
+        };
+        if whole.rms() < NEAR {
             return Ok(whole);
         }
         let segments = stage.begun_anew(&whole.built, &whole.segments, (Effort::STARTS, lost::POOR_RUN));
@@ -283,6 +287,15 @@ fn begun_as(longer: &[Segment], windows: &[Segment]) -> Vec<Segment> {
         Segment { guess, ..stretch.clone() }
     };
     longer.iter().map(of).collect()
+}
+
+/// Stretches of a set that shorter ones were fitted to: their starts, where these do not lead along all of them already.
+fn settled(stage: &Stage<'_>, plant: &Plant, set: EffectSet, segments: Vec<Segment>) -> Result<Fit, DiagnoseError> {
+    let first = fit(stage, plant, set, segments, Effort { iterations: 0, ..Effort::STARTS })?;
+    if lost::calc_share(stage, &first) == 0.0 {
+        return Ok(first);
+    }
+    follow(stage, plant, first.set, &first.segments)
 }
 
 /// Whole runs fitted; where a few of them stand in wrong valleys these do not drag the others along.
@@ -346,6 +359,9 @@ fn weigh(stage: &Stage<'_>, built: &Built, segments: &mut [Segment]) {
 
 /// A fit of segments of which some may stand in wrong valleys: weighed, and these begun anew, as long as that helps.
 fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) -> Result<Fit, DiagnoseError> {
+    if lost::calc_share(stage, &now) == 0.0 {
+        return if now.is_significant() { fit_in_turns(stage, plant, now.set, now.segments, effort) } else { Ok(now) };
+    }
     let anew = |now: &Fit| {
         let mut segments = stage.begun_anew(&now.built, &now.segments, (Effort::STARTS, POOR_WINDOW));
         segments.iter_mut().for_each(|s| (s.columns, s.weight) = (None, 1.0));

@@ -204,9 +204,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     // Bases move by their momentum; accelerations are those of joints alone.
     if model.nv() > 0 {
         calc_bias(model, state, ws, false);
-        if solve::factor(model, ws, 1.0) {
-            solve::solve(model, ws, 1.0);
-        } else {
+        if !solve::solve_joints(model, ws) {
             ws.v_gain.fill(f64::NAN);
         }
         rk.rate.v.copy_from_slice(&ws.v_gain);

@@ -30,6 +30,8 @@ pub(crate) struct Islands {
     matrix: Vec<f64>,
     rhs: Vec<Vec<f64>>,
     scratch: Vec<f64>,
+    /// Whether vehicles without joints are left out.
+    leaves_rigid: bool,
 }
 
 impl Islands {
@@ -44,6 +46,7 @@ impl Islands {
             matrix: vec![0.0; n * (n + LANES)],
             rhs: model.vehicles.iter().map(|_| Vec::with_capacity(n)).collect(),
             scratch: vec![0.0; largest * largest],
+            leaves_rigid: false,
         }
     }
 
@@ -64,8 +67,9 @@ impl Islands {
         self.size.fill(0);
         for (i, vehicle) in model.vehicles.iter().enumerate() {
             let (size, mask) = (&mut self.size[self.group[i]], vehicle.base.mask());
+            let is_left = self.leaves_rigid && vehicle.tree.nv == 0;
             for (k, row) in self.rows[i].iter_mut().enumerate() {
-                *row = if k >= 6 || mask[k] { *size } else { HELD };
+                *row = if !is_left && (k >= 6 || mask[k]) { *size } else { HELD };
                 *size += usize::from(*row != HELD);
             }
         }
@@ -114,7 +118,7 @@ pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
 
 fn add_vehicle(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
     let vehicle = &model.vehicles[i];
-    if vehicle.base.is_held() && vehicle.tree.nv == 0 {
+    if vehicle.tree.nv == 0 && (vehicle.base.is_held() || ws.islands.leaves_rigid) {
         return;
     }
     let n = 6 + vehicle.tree.nv;
@@ -202,6 +206,18 @@ fn for_path(tree: &Tree, kin: &Kinematics, body: usize, mut visit: impl FnMut(us
     }
 }
 
+/// Joint accelerations of the present state under forces that do not answer to gains, into `v_gain`: bases go by their momentum, and what has
+/// no joints is left out. `false` if a mass matrix is not positive definite.
+pub(crate) fn solve_joints(model: &Model, ws: &mut Workspace) -> bool {
+    ws.islands.leaves_rigid = true;
+    let is_definite = factor(model, ws, 1.0);
+    if is_definite {
+        solve(model, ws, 1.0);
+    }
+    ws.islands.leaves_rigid = false;
+    is_definite
+}
+
 /// Solves for the gains of all twists and rates, from the factored matrices and the lines' forces at zero gain.
 pub(crate) fn solve(model: &Model, ws: &mut Workspace, h: f64) {
     ws.contact.fill(Wrench::default());
@@ -239,6 +255,9 @@ fn line_beside_drives(model: &Model, ws: &Workspace, touch: &Touch, h: f64) -> V
 
 fn write_rhs(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
     let vehicle = &model.vehicles[i];
+    if ws.islands.leaves_rigid && vehicle.tree.nv == 0 {
+        return;
+    }
     for body in 0..vehicle.tree.bodies.len() {
         ws.dynamics[i].wrench[body] = ws.bias[vehicle.body0 + body] - ws.contact[vehicle.body0 + body];
     }
