@@ -2,14 +2,28 @@
 //!
 //! What happens in a touch is short and steep, and a window that begins in its midst must guess how deep and how bent everything is: there are
 //! many wrong valleys in that. A flight tells where everything is and how it moves, without any contact's memory, as closely as its length
-//! allows. So where runs fly from touch to touch the continuation goes by the length of the touch that is looked at after a flight, not by
-//! the length of windows, until a stretch reaches into the next touch, whose own approach then ends.
+//! allows, if nothing is amiss in flight. So where runs fly from touch to touch as the model does, the continuation goes by the length of the
+//! touch that is looked at after a flight, not by the length of windows, until a stretch reaches into the next touch: that needs no approach of
+//! its own then.
 
-use crate::fit::Fit;
+use crate::error::DiagnoseError;
+use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::linear::{Segment, Stage};
+use crate::plant::Plant;
 use crate::replay::{Span, touches_in};
+use crate::stretches::guessed;
 use crate::tape::Tape;
 use rayon::prelude::*;
+use std::sync::Arc;
+
+/// The flights of all runs, and how much of the touches after them is looked at first.
+#[derive(Clone, Debug)]
+pub(crate) struct Approaches {
+    /// Flights, run by run and in order.
+    pub flights: Vec<Flight>,
+    /// The shortest look at a touch, s.
+    pub length: f64,
+}
 
 /// A stretch in which nothing touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,8 +71,48 @@ pub(crate) fn find_flights(stage: &Stage<'_>, windows: &Fit) -> Vec<Flight> {
     flights
 }
 
+/// The shortest approaches that tell something, and longer ones.
+pub(crate) type Begun = (Fit, Vec<Vec<Segment>>);
+
+impl Approaches {
+    /// The shortest approaches in which a set leaves something, their starts fitted, and the longer ones; none where something is amiss in flight
+    /// already (what comes of that in a touch is no way to tell what it is), or nothing in any touch. `flown`: the flights under the set.
+    pub fn begin(
+        &self,
+        stage: &Stage<'_>,
+        plant: &Plant,
+        set: &EffectSet,
+        flown: &Fit,
+    ) -> Result<Option<Begun>, DiagnoseError> {
+        if flown.is_significant() {
+            return Ok(None);
+        }
+        let built = &flown.built;
+        let begun = |(run, span): (usize, Span)| {
+            let flown = flown.segments.iter().find(|s| s.run == run && s.span.from == span.from);
+            let flown = flown.map(|s| Segment { span, guess: Arc::new(s.start.clone()), columns: None, ..s.clone() });
+            flown.unwrap_or_else(|| guessed(built, stage.tapes, run, span))
+        };
+        let of_length = |length: f64| -> Vec<Segment> {
+            approaches(&self.flights, stage.tapes, length).into_iter().map(begun).collect()
+        };
+        let mut rungs: Vec<Vec<Segment>> = lengths(self.length, stage.tapes).into_iter().map(of_length).collect();
+        while !rungs.is_empty() {
+            let near = fit(stage, plant, set.frozen(), rungs.remove(0), Effort::STARTS)?;
+            stage
+                .work
+                .watch
+                .step(&format!("flights and the beginning of the touches after them: error {:.3}", near.rms()));
+            if near.is_significant() {
+                return Ok(Some((Fit { set: set.clone(), ..near }, rungs)));
+            }
+        }
+        Ok(None)
+    }
+}
+
 /// Flights with as much of the touches after them; a touch that is reached from an earlier flight needs no approach of its own.
-pub(crate) fn approaches(flights: &[Flight], tapes: &[Tape], length: f64) -> Vec<(usize, Span)> {
+fn approaches(flights: &[Flight], tapes: &[Tape], length: f64) -> Vec<(usize, Span)> {
     let mut found: Vec<(usize, Span)> = Vec::new();
     for flight in flights {
         let Flight { run, span, touch } = *flight;
@@ -77,10 +131,10 @@ pub(crate) fn approaches(flights: &[Flight], tapes: &[Tape], length: f64) -> Vec
     found
 }
 
-/// Lengths of touches to look at after those of the shortest approaches, s.
-pub(crate) fn lengths(first: f64, tapes: &[Tape]) -> Vec<f64> {
+/// Lengths of touches to look at, shortest first, s.
+fn lengths(first: f64, tapes: &[Tape]) -> Vec<f64> {
     let longest = tapes.iter().map(|t| t.span.1 - t.span.0).fold(0.0, f64::max);
-    let all = std::iter::successors(Some(LONGER * first), |l| Some(LONGER * l));
+    let all = std::iter::successors(Some(first), |l| Some(LONGER * l));
     all.take_while(|l| *l < LONGEST * longest).collect()
 }
 
@@ -107,12 +161,13 @@ mod tests {
     #[test]
     fn short_approaches_end_in_their_own_touch_long_ones_take_the_next_with_them() {
         let (tapes, flights) = flown();
-        let spans = |length| approaches(&flights, &tapes, length).iter().map(|s| (s.1.from, s.1.to)).collect::<Vec<_>>();
+        let spans =
+            |length| approaches(&flights, &tapes, length).iter().map(|s| (s.1.from, s.1.to)).collect::<Vec<_>>();
         assert_eq!(spans(0.125), [(0.0, 0.625), (0.6, 1.525), (1.6, 5.0)]);
         assert_eq!(spans(0.5), [(0.0, 1.0), (0.6, 1.9), (1.9, 5.0)]);
         assert_eq!(spans(2.0), [(0.0, 2.5), (2.5, 5.0)]);
         assert_eq!(spans(4.0), [(0.0, 4.5)]);
-        assert_eq!(lengths(0.125, &tapes), [0.5, 2.0]);
+        assert_eq!(lengths(0.125, &tapes), [0.125, 0.5, 2.0]);
     }
 
     #[test]

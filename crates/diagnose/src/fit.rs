@@ -273,7 +273,7 @@ fn iterate(
     stage: &Stage<'_>,
     plant: &Plant,
     now: &mut Fit,
-    sizes: &mut Vec<f64>,
+    sizes: &mut [f64],
     (mut damping, effort): (f64, Effort),
 ) -> Result<Went, DiagnoseError> {
     let slots = now.set.slots();

@@ -48,24 +48,26 @@ pub struct Scalar {
 /// Estimates the starts of every run under both models, from those that the search has found, and judges all samples by them; `follows`: whole
 /// runs follow the corrected one.
 ///
-/// `stage` has the samples that starts are estimated from, `all` those that are judged: a start that thousands of samples tell is told no
-/// worse by every fourth of them.
+/// `few` has the samples by which the nominal model's starts are estimated where it is known to be wrong, `all` those by which both are judged.
 pub fn judge(
-    (stage, all): (&Stage<'_>, &Stage<'_>),
+    (few, all): (&Stage<'_>, &Stage<'_>),
     plant: &Plant,
     (nominal, found): ([&Fit; 2], &Fit),
     (window, follows): (f64, bool),
 ) -> Result<Judgement, DiagnoseError> {
-    let predict =
-        |fit: Fit| Prediction { residuals: fit.segments.par_iter().map(|s| all.residuals(&fit.built, s)).collect(), fit };
+    let predict = |fit: Fit| Prediction {
+        residuals: fit.segments.par_iter().map(|s| all.residuals(&fit.built, s)).collect(),
+        fit,
+    };
     let is_last = |known: &Fit| known.set.members.len() == found.set.members.len();
     let of = |known: &Fit| -> Result<(Prediction, Prediction), DiagnoseError> {
+        let stage = if is_last(known) { all } else { few };
         let set = known.set.frozen();
         let built = plant.build(&set.effects())?;
         // What a wrong model is off by takes no more exact starts.
         let effort = if is_last(known) { Effort::JUDGED } else { Effort { iterations: GLANCES, ..Effort::JUDGED } };
         let mut windows = cut(&built, stage.tapes, Some(window), |_| true);
-        begin_from(&mut windows, &known.segments);
+        begin_from(&mut windows, &known.segments, !is_last(known));
         let first = |windows: &[Segment]| joined(windows, stage.tapes);
         let of_runs = if is_last(known) { found } else { nominal[1] };
         let restarted = |windows: Vec<Segment>| -> Result<Fit, DiagnoseError> {
@@ -81,13 +83,13 @@ pub fn judge(
             let windowed = restarted(windows)?;
             let mut runs = first(&windowed.segments);
             if !is_last(known) {
-                begin_from(&mut runs, &of_runs.segments);
+                begin_from(&mut runs, &of_runs.segments, true);
             }
             let whole = follow_with(stage, plant, set.clone(), &runs, effort)?;
             return Ok((predict(windowed), predict(whole)));
         }
         let mut runs = first(&windows);
-        begin_from(&mut runs, &of_runs.segments);
+        begin_from(&mut runs, &of_runs.segments, !is_last(known));
         let mut whole = follow_with(stage, plant, set.clone(), &runs, effort)?;
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
         if is_last(known) && known.rms() < PLAUSIBLE {
@@ -120,14 +122,14 @@ const GLANCES: usize = 2;
 /// Root mean square over whole runs up to which starts are doubted before the model is.
 const PLAUSIBLE: f64 = 8.0;
 
-/// Takes the starts of segments that are known already.
-fn begin_from(segments: &mut [Segment], known: &[Segment]) {
+/// Takes the starts of segments that are known already, and their derivatives where these need not be fresh.
+fn begin_from(segments: &mut [Segment], known: &[Segment], takes_columns: bool) {
     for segment in segments {
         let begins_alike = |k: &&Segment| k.run == segment.run && (k.span.from - segment.span.from).abs() < 1e-9;
         let Some(known) = known.iter().find(begins_alike) else { continue };
         segment.start.clone_from(&known.start);
-        if (known.span.to - segment.span.to).abs() < 1e-9 && known.weight == segment.weight {
-            (segment.columns, segment.steps) = (known.columns.clone(), known.steps.clone());
+        if takes_columns && (known.span.to - segment.span.to).abs() < 1e-9 && known.weight == segment.weight {
+            segment.columns.clone_from(&known.columns);
         }
     }
 }

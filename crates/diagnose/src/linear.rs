@@ -373,11 +373,6 @@ impl Steps {
         let served = |f: &Freedom| self.0.iter().find(|s| s.0 == *f).map_or_else(|| f.first_step(), |s| s.1);
         freedoms.iter().map(served).collect()
     }
-
-    /// Whether none are known.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
 }
 
 /// Sum of the reduced products over segments.

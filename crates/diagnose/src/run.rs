@@ -14,7 +14,7 @@ use crate::facts::Facts;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::Hypothesis;
 use crate::judge::{Judgement, judge};
-use crate::linear::{Segment, Stage};
+use crate::linear::{Segment, Stage, Steps};
 use crate::locate::{Located, locate, locate_in, places};
 use crate::pace::{self, Discretisation};
 use crate::plant::Plant;
@@ -87,14 +87,14 @@ pub fn diagnose(
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
     clock.stage("search", 0.25);
-    let Stretches { windows, rungs, whole } = stretches::choose(&stage, &plant, &nominal, window)?;
+    let Stretches { windows, rungs, whole, approaches } = stretches::choose(&stage, &plant, &nominal, window)?;
     let whole = follow(&stage, &plant, EffectSet::default(), &whole)?;
     watch.step(&format!(
         "the nominal model: error {:.3} in windows, {:.3} over whole runs",
         nominal.rms(),
         whole.rms()
     ));
-    let standing = Standing::new(&stage, windows, whole.clone(), rungs);
+    let standing = Standing::new(&stage, (windows, whole.clone()), (rungs, approaches));
     let candidates = |stage: &Stage<'_>, now: &Fit| {
         let facts = Facts::new(&now.built, &tapes);
         let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
@@ -108,14 +108,16 @@ pub fn diagnose(
     let (thin, stage) = (stage, Stage { tapes: &tapes, ..stage });
     let effects = standing.judge().set.clone();
     let segments = if follows { standing.whole.segments } else { standing.windows.segments };
-    let segments = segments.into_iter().map(|s| Segment { columns: None, weight: 1.0, ..s }).collect();
+    let afresh = |s: Segment| Segment { columns: None, steps: Steps::default(), weight: 1.0, ..s };
+    let segments = segments.into_iter().map(afresh).collect();
     let mut found = fit_in_turns(&thin, &plant, effects, segments, FINAL)?;
     if found.segments.iter().any(|s| stage.count(s) > thin.count(s)) {
         let segments = found.segments.into_iter().map(|s| Segment { columns: None, ..s }).collect();
         found = fit(&stage, &plant, found.set, segments, POLISH)?;
     }
+    watch.step(&format!("error {:.3} of all samples", found.rms()));
     clock.stage("predict every run", 0.85);
-    let judgement = judge((&thin, &stage), &plant, ([&nominal, &whole], &found), (window, follows))?;
+    let judgement = judge((&Stage { pace, ..thin }, &stage), &plant, ([&nominal, &whole], &found), (window, follows))?;
     let left = left_by(&thin, &plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
     let verdict = verdict(&judgement, &found, follows);
@@ -151,7 +153,10 @@ fn suited(stage: &Stage<'_>, standing: &Standing, chosen: Discretisation) -> Dis
     }
     let found = pace::refine(stage, &judged.built, &judged.segments);
     let Pace { step, free } = found.pace;
-    stage.work.watch.step(&format!("steps of {step:.3e} s, {free:.3e} s in free flight: halving moves {:.1e}", found.worst));
+    stage
+        .work
+        .watch
+        .step(&format!("steps of {step:.3e} s, {free:.3e} s in free flight: halving moves {:.1e}", found.worst));
     found
 }
 

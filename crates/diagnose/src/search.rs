@@ -146,6 +146,9 @@ pub fn search(
         let grown = titles(&now);
         now = simplify(stage, plant, now.weighted(stage), (&known, brought))?;
         grown.iter().zip(titles(&now)).for_each(|(grown, plain)| hand_over(&mut attempts, grown, &plain));
+        if now.judge().is_significant() {
+            now = now.flown(stage, plant)?;
+        }
         round += 1;
     }
     if attempts.is_empty() {
@@ -227,9 +230,15 @@ fn refit_best(
     let mut best: Option<Standing> = None;
     // What looks alike in short windows may not do so in longer ones.
     let limits = &Limits { ends: if now.rungs.is_empty() { 1 } else { limits.ends }, ..*limits };
+    // Windows that had to be shortened are only there to begin from: where whole runs are near, these tell more.
+    let is_steep = now.reach <= STEEP;
+    let has_begun = is_steep && now.follows() && now.whole.rms() < lost::NEAR;
     for is_window in [true, false] {
         if all.is_empty() {
             break;
+        }
+        if is_window && has_begun {
+            continue;
         }
         let here = if is_window { &now.windows } else { &now.whole };
         // What is found in windows and explains whole runs needs no screen over these.
@@ -239,11 +248,11 @@ fn refit_best(
             break;
         }
         let mut scores = screen_aloud(stage, plant, here, &all)?;
-        let mut leaves_dear = is_window && !dear.is_empty();
+        let mut leaves_dear = (is_window || has_begun) && !dear.is_empty();
         // What is dear to screen is screened only where the rest leaves something.
         let promised = scores.first().map_or(0.0, |s| s.score);
         // In windows that had to be shortened a promise says little of what a refit brings.
-        let is_steep = now.reach <= STEEP;
+        let is_steep = is_steep && is_window;
         if leaves_dear && !is_steep && promised < SUFFICIENT * here.excess() {
             leaves_dear = false;
             let further = screen_aloud(stage, plant, here, dear)?;
@@ -267,7 +276,7 @@ fn refit_best(
         // Over whole runs only what the windows did not rule out is screened.
         let order: Vec<(String, String)> =
             attempts.iter().take(SCREENED).map(|a| (a.name.clone(), a.place.clone())).collect();
-        all.retain(|h| order.iter().any(|(name, place)| h.name == name && h.place == *place));
+        all.retain(|h| has_begun || order.iter().any(|(name, place)| h.name == name && h.place == *place));
         let most = brought_by(here, &ready);
         for (at, tried) in ready {
             if best.as_ref().is_some_and(|b| is_done(now, b)) || here.cost - tried.cost < NEARLY * most {

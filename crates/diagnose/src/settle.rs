@@ -68,7 +68,7 @@ impl Stage<'_> {
 
     /// Fits every start, so many linearisations at most, until one promises less than a share of the segment's excess.
     pub fn fit_starts(&self, built: &Built, segments: &[Segment], effort: Effort) -> Vec<Settled> {
-        // The first segment finds the steps of the difference quotients for all that know none.
+        // The first segment finds the steps of the difference quotients for all.
         let Some((first, others)) = segments.split_first() else { return Vec::new() };
         let first = self.fit_start(built, first, &Steps::default(), effort);
         let of = |s: &Segment| self.fit_start(built, s, &first.segment.steps, effort);
@@ -76,12 +76,11 @@ impl Stage<'_> {
         std::iter::once(first).chain(others).collect()
     }
 
-    /// One start; `steps`: those of the difference quotients where the segment knows none.
+    /// One start; `steps`: those with which its difference quotients begin.
     fn fit_start(&self, built: &Built, segment: &Segment, steps: &Steps, effort: Effort) -> Settled {
         let (mut segment, mut r) = self.nearer(built, segment);
-        if segment.steps.is_empty() {
-            segment.steps.clone_from(steps);
-        }
+        // Steps that served another model may reach across an event by now.
+        segment.steps.clone_from(steps);
         let all = freedoms(built, &segment.start);
         // What is as near as noise lets it be needs no derivatives.
         let noise = r.len() as f64 + (2.0 * r.len() as f64).sqrt();

@@ -2,9 +2,9 @@
 //!
 //! Windows are shortened until the nominal model follows them, for a screen is linear; those in which most is amiss and an even selection of
 //! the others speak for all. What is slow shows in long stretches only: flights between touches, which no event cuts, or thirds of runs. Where
-//! runs fly and windows had to be shortened, flights with the beginning of the next touch take the windows' place ([`crate::approaches`]).
+//! runs fly as the nominal model does and windows had to be shortened, flights with the beginning of the next touch take the windows' place ([`crate::approaches`]).
 
-use crate::approaches::{Flight, approaches, find_flights, is_sustained, lengths};
+use crate::approaches::{Approaches, Flight, find_flights, is_sustained};
 use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::guess::guess;
@@ -37,7 +37,7 @@ pub(crate) fn cut(built: &Built, tapes: &[Tape], window: Option<f64>, wanted: im
     all.par_iter().map(|(run, span)| guessed(built, tapes, *run, *span)).collect()
 }
 
-fn guessed(built: &Built, tapes: &[Tape], run: usize, span: Span) -> Segment {
+pub(crate) fn guessed(built: &Built, tapes: &[Tape], run: usize, span: Span) -> Segment {
     let start = guess(built, &tapes[run], span.from);
     Segment { run, span, guess: Arc::new(start.clone()), start, weight: 1.0, columns: None, steps: Steps::default() }
 }
@@ -58,6 +58,8 @@ pub(crate) struct Stretches {
     pub rungs: Vec<Vec<Segment>>,
     /// Whole runs, from the best starts that are known.
     pub whole: Vec<Segment>,
+    /// What takes the windows' place once nothing is amiss in flight any more.
+    pub approaches: Option<Approaches>,
 }
 
 /// Chooses from the nominal model's windows of the length in which predictions are judged.
@@ -76,7 +78,7 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
     let mut first = joined(&nominal.segments, stage.tapes);
     let flights = find_flights(stage, nominal);
     if flights.is_empty() && !(rungs.is_empty() && nominal.rms() < FAR) {
-        return Ok(Stretches { windows: some, rungs, whole: first });
+        return Ok(Stretches { windows: some, rungs, whole: first, approaches: None });
     }
     let long = long(stage, plant, nominal, &flights)?;
     let begins = |s: &&Segment| s.span.from == stage.tapes[s.run].span.0;
@@ -84,32 +86,27 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
         first.iter_mut().filter(|s| s.run == begun.run).for_each(|s| s.clone_from(&begun));
     }
     if flights.is_empty() {
-        return Ok(Stretches { windows: together(some, long), rungs, whole: first });
+        return Ok(Stretches { windows: together(some, long), rungs, whole: first, approaches: None });
     }
-    if rungs.is_empty() {
-        // What lies within flights is seen in these.
-        let within = |s: &Segment| {
-            flights.iter().any(|f| f.run == s.run && f.span.from <= s.span.from && s.span.to <= f.span.to)
-        };
-        let touching: Vec<Segment> = some.segments.iter().filter(|s| !within(s)).cloned().collect();
-        let some = if touching.is_empty() { some } else { of_segments(stage, &some, touching) };
-        return Ok(Stretches { windows: together(some, long), rungs, whole: first });
-    }
-    let of_length = |length: f64| -> Vec<Segment> {
-        let begun = |(run, span): (usize, Span)| {
-            let flown = long.segments.iter().find(|s| s.run == run && s.span.from == span.from);
-            let flown = flown.map(|s| Segment { span, guess: Arc::new(s.start.clone()), columns: None, ..s.clone() });
-            flown.unwrap_or_else(|| guessed(&nominal.built, stage.tapes, run, span))
-        };
-        approaches(&flights, stage.tapes, length).into_iter().map(begun).collect()
+    let approaches = (!rungs.is_empty()).then_some(Approaches { flights: flights.clone(), length });
+    let begun = match &approaches {
+        Some(approaches) => approaches.begin(stage, plant, &EffectSet::default(), &long)?,
+        None => None,
     };
-    let near = fit(stage, plant, EffectSet::default(), of_length(length), Effort::STARTS)?;
-    stage.work.watch.step(&format!("flights and {length:.3} s of the touches after them: error {:.3}", near.rms()));
-    let lasting: Vec<Segment> =
-        some.segments.iter().filter(|s| is_sustained(s, &flights, 2.0 * window)).cloned().collect();
-    let windows = if lasting.is_empty() { near } else { together(near, of_segments(stage, &some, lasting)) };
-    let rungs = lengths(length, stage.tapes).into_iter().map(of_length).collect();
-    Ok(Stretches { windows, rungs, whole: first })
+    if let Some((near, rungs)) = begun {
+        let lasting = |s: &&Segment| is_sustained(s, &flights, 2.0 * window);
+        let lasting: Vec<Segment> = some.segments.iter().filter(lasting).cloned().collect();
+        let windows = if lasting.is_empty() { near } else { together(near, of_segments(stage, &some, lasting)) };
+        return Ok(Stretches { windows, rungs, whole: first, approaches: None });
+    }
+    // What is slow keeps its weight as windows grow.
+    rungs.iter_mut().for_each(|rung| rung.extend(long.segments.iter().cloned()));
+    // What lies within flights is seen in these.
+    let within =
+        |s: &Segment| flights.iter().any(|f| f.run == s.run && f.span.from <= s.span.from && s.span.to <= f.span.to);
+    let touching: Vec<Segment> = some.segments.iter().filter(|s| !within(s)).cloned().collect();
+    let some = if touching.is_empty() { some } else { of_segments(stage, &some, touching) };
+    Ok(Stretches { windows: together(some, long), rungs, whole: first, approaches })
 }
 
 /// Root mean square over the segments that are missed: a few among many that are followed count like many.
