@@ -16,15 +16,6 @@ use crate::tape::Tape;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// The flights of all runs, and how much of the touches after them is looked at first.
-#[derive(Clone, Debug)]
-pub(crate) struct Approaches {
-    /// Flights, run by run and in order.
-    pub flights: Vec<Flight>,
-    /// The shortest look at a touch, s.
-    pub length: f64,
-}
-
 /// A stretch in which nothing touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Flight {
@@ -74,41 +65,35 @@ pub(crate) fn find_flights(stage: &Stage<'_>, windows: &Fit) -> Vec<Flight> {
 /// The shortest approaches that tell something, and longer ones.
 pub(crate) type Begun = (Fit, Vec<Vec<Segment>>);
 
-impl Approaches {
-    /// The shortest approaches in which a set leaves something, their starts fitted, and the longer ones; none where something is amiss in flight
-    /// already (what comes of that in a touch is no way to tell what it is), or nothing in any touch. `flown`: the flights under the set.
-    pub fn begin(
-        &self,
-        stage: &Stage<'_>,
-        plant: &Plant,
-        set: &EffectSet,
-        flown: &Fit,
-    ) -> Result<Option<Begun>, DiagnoseError> {
-        if flown.is_significant() {
-            return Ok(None);
-        }
-        let built = &flown.built;
-        let begun = |(run, span): (usize, Span)| {
-            let flown = flown.segments.iter().find(|s| s.run == run && s.span.from == span.from);
-            let flown = flown.map(|s| Segment { span, guess: Arc::new(s.start.clone()), columns: None, ..s.clone() });
-            flown.unwrap_or_else(|| guessed(built, stage.tapes, run, span))
-        };
-        let of_length = |length: f64| -> Vec<Segment> {
-            approaches(&self.flights, stage.tapes, length).into_iter().map(begun).collect()
-        };
-        let mut rungs: Vec<Vec<Segment>> = lengths(self.length, stage.tapes).into_iter().map(of_length).collect();
-        while !rungs.is_empty() {
-            let near = fit(stage, plant, set.frozen(), rungs.remove(0), Effort::STARTS)?;
-            stage
-                .work
-                .watch
-                .step(&format!("flights and the beginning of the touches after them: error {:.3}", near.rms()));
-            if near.is_significant() {
-                return Ok(Some((Fit { set: set.clone(), ..near }, rungs)));
-            }
-        }
-        Ok(None)
+/// The shortest approaches in which the nominal model leaves something, their starts fitted, and the longer ones; none where something is amiss in
+/// flight already (what comes of that in a touch is no way to tell what it is), or nothing in any touch. `length`: the shortest look at a touch,
+/// s; `flown`: the flights under the nominal model.
+pub(crate) fn begin(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    (flights, length): (&[Flight], f64),
+    flown: &Fit,
+) -> Result<Option<Begun>, DiagnoseError> {
+    if flown.is_significant() {
+        return Ok(None);
     }
+    let built = &flown.built;
+    let begun = |(run, span): (usize, Span)| {
+        let flown = flown.segments.iter().find(|s| s.run == run && s.span.from == span.from);
+        let flown = flown.map(|s| Segment { span, guess: Arc::new(s.start.clone()), columns: None, ..s.clone() });
+        flown.unwrap_or_else(|| guessed(built, stage.tapes, run, span))
+    };
+    let of_length =
+        |length: f64| -> Vec<Segment> { approaches(flights, stage.tapes, length).into_iter().map(begun).collect() };
+    let mut rungs: Vec<Vec<Segment>> = lengths(length, stage.tapes).into_iter().map(of_length).collect();
+    while !rungs.is_empty() {
+        let near = fit(stage, plant, EffectSet::default(), rungs.remove(0), Effort::STARTS)?;
+        stage.work.watch.step(&format!("flights and the beginning of the touches after them: error {:.3}", near.rms()));
+        if near.is_significant() {
+            return Ok(Some((near, rungs)));
+        }
+    }
+    Ok(None)
 }
 
 /// Flights with as much of the touches after them; a touch that is reached from an earlier flight needs no approach of its own.

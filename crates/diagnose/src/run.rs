@@ -87,14 +87,14 @@ pub fn diagnose(
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
     clock.stage("search", 0.25);
-    let Stretches { windows, rungs, whole, approaches } = stretches::choose(&stage, &plant, &nominal, window)?;
+    let Stretches { windows, rungs, whole } = stretches::choose(&stage, &plant, &nominal, window)?;
     let whole = follow(&stage, &plant, EffectSet::default(), &whole)?;
     watch.step(&format!(
         "the nominal model: error {:.3} in windows, {:.3} over whole runs",
         nominal.rms(),
         whole.rms()
     ));
-    let standing = Standing::new(&stage, (windows, whole.clone()), (rungs, approaches));
+    let standing = Standing::new(&stage, windows, whole.clone(), rungs);
     let candidates = |stage: &Stage<'_>, now: &Fit| {
         let facts = Facts::new(&now.built, &tapes);
         let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();

@@ -146,9 +146,6 @@ pub fn search(
         let grown = titles(&now);
         now = simplify(stage, plant, now.weighted(stage), (&known, brought))?;
         grown.iter().zip(titles(&now)).for_each(|(grown, plain)| hand_over(&mut attempts, grown, &plain));
-        if now.judge().is_significant() {
-            now = now.flown(stage, plant)?;
-        }
         round += 1;
     }
     if attempts.is_empty() {

@@ -4,7 +4,6 @@
 //! the length in which predictions are judged, shorter ones come first, and a set that follows these climbs to longer ones (continuation
 //! over the length, as in multiple shooting: Bock and Plitt 1984).
 
-use crate::approaches::Approaches;
 use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::Hypothesis;
@@ -34,24 +33,18 @@ pub struct Standing {
     pub rungs: Vec<Vec<Segment>>,
     /// Root mean square up to which whole runs follow far enough to be judged by; zero where they never do.
     pub reach: f64,
-    /// What takes the windows' place once nothing is amiss in flight any more.
-    pub(crate) approaches: Option<Approaches>,
 }
 
 impl Standing {
     /// One set at both lengths.
-    pub(crate) fn new(
-        stage: &Stage<'_>,
-        (windows, whole): (Fit, Fit),
-        (rungs, approaches): (Vec<Vec<Segment>>, Option<Approaches>),
-    ) -> Self {
+    pub fn new(stage: &Stage<'_>, windows: Fit, whole: Fit, rungs: Vec<Vec<Segment>>) -> Self {
         let reach = match rungs.is_empty() {
             true => DIVERGED,
             // Where nothing restores what goes astray, windows judge.
             false if whole.rms() > DIVERGED => 0.0,
             false => STEEP,
         };
-        Self { windows, whole, rungs, reach, approaches }.weighted(stage)
+        Self { windows, whole, rungs, reach }.weighted(stage)
     }
 
     /// The same with weights: where windows are only there to begin from, or are far off yet, none of them counts for more than all that is in it.
@@ -68,20 +61,6 @@ impl Standing {
         self.windows.cost = stage.cost(&self.windows.built, &self.windows.segments);
         (self.windows.count, self.windows.noise) = stage.noise(&self.windows.segments);
         self
-    }
-
-    /// The same in approaches where what was found leaves nothing amiss in flight.
-    pub(crate) fn flown(self, stage: &Stage<'_>, plant: &Plant) -> Result<Self, DiagnoseError> {
-        let Some(approaches) = self.approaches.as_ref().filter(|_| !self.follows()) else { return Ok(self) };
-        let is_flight = |s: &&Segment| approaches.flights.iter().any(|f| (f.run, f.span) == (s.run, s.span));
-        let flights = self.windows.segments.iter().filter(is_flight);
-        let flights = flights.map(|s| Segment { weight: 1.0, columns: None, ..s.clone() }).collect();
-        // What acts in flight flights tell best.
-        let flown = fit(stage, plant, self.windows.set.clone(), flights, Effort::STARTS)?;
-        stage.work.watch.step(&format!("  flights alone: error {:.3}", flown.rms()));
-        let Some((windows, rungs)) = approaches.begin(stage, plant, &flown.set, &flown)? else { return Ok(self) };
-        let windows = Fit { covariance: self.windows.covariance.clone(), ..windows };
-        Ok(Self { windows, rungs, approaches: None, ..self }.weighted(stage))
     }
 
     /// The fit that judges: whole runs where these follow, else the windows.
@@ -179,8 +158,7 @@ impl Standing {
             false => Fit { set: set.clone(), ..self.followed(stage, plant, set.frozen(), &segments)? },
         };
         let stage = &Stage { pace: if is_far { stage.pace } else { finer(stage, &whole) }, ..*stage };
-        let approaches = self.approaches.clone();
-        let mut standing = Self { windows, whole, rungs, reach: self.reach, approaches };
+        let mut standing = Self { windows, whole, rungs, reach: self.reach };
         let is_fair = standing.windows.rms() <= FAIR || lost::calc_share(stage, &standing.windows) <= lost::FEW;
         if !standing.follows() && !is_far && is_fair {
             standing = standing.along_the_valley(stage, plant)?;

@@ -4,7 +4,7 @@
 //! the others speak for all. What is slow shows in long stretches only: flights between touches, which no event cuts, or thirds of runs. Where
 //! runs fly as the nominal model does and windows had to be shortened, flights with the beginning of the next touch take the windows' place ([`crate::approaches`]).
 
-use crate::approaches::{Approaches, Flight, find_flights, is_sustained};
+use crate::approaches::{Flight, begin, find_flights, is_sustained};
 use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::guess::guess;
@@ -58,8 +58,6 @@ pub(crate) struct Stretches {
     pub rungs: Vec<Vec<Segment>>,
     /// Whole runs, from the best starts that are known.
     pub whole: Vec<Segment>,
-    /// What takes the windows' place once nothing is amiss in flight any more.
-    pub approaches: Option<Approaches>,
 }
 
 /// Chooses from the nominal model's windows of the length in which predictions are judged.
@@ -78,7 +76,7 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
     let mut first = joined(&nominal.segments, stage.tapes);
     let flights = find_flights(stage, nominal);
     if flights.is_empty() && !(rungs.is_empty() && nominal.rms() < FAR) {
-        return Ok(Stretches { windows: some, rungs, whole: first, approaches: None });
+        return Ok(Stretches { windows: some, rungs, whole: first });
     }
     let long = long(stage, plant, nominal, &flights)?;
     let begins = |s: &&Segment| s.span.from == stage.tapes[s.run].span.0;
@@ -86,18 +84,14 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
         first.iter_mut().filter(|s| s.run == begun.run).for_each(|s| s.clone_from(&begun));
     }
     if flights.is_empty() {
-        return Ok(Stretches { windows: together(some, long), rungs, whole: first, approaches: None });
+        return Ok(Stretches { windows: together(some, long), rungs, whole: first });
     }
-    let approaches = (!rungs.is_empty()).then_some(Approaches { flights: flights.clone(), length });
-    let begun = match &approaches {
-        Some(approaches) => approaches.begin(stage, plant, &EffectSet::default(), &long)?,
-        None => None,
-    };
+    let begun = if rungs.is_empty() { None } else { begin(stage, plant, (&flights, length), &long)? };
     if let Some((near, rungs)) = begun {
         let lasting = |s: &&Segment| is_sustained(s, &flights, 2.0 * window);
         let lasting: Vec<Segment> = some.segments.iter().filter(lasting).cloned().collect();
         let windows = if lasting.is_empty() { near } else { together(near, of_segments(stage, &some, lasting)) };
-        return Ok(Stretches { windows, rungs, whole: first, approaches: None });
+        return Ok(Stretches { windows, rungs, whole: first });
     }
     // What is slow keeps its weight as windows grow.
     rungs.iter_mut().for_each(|rung| rung.extend(long.segments.iter().cloned()));
@@ -106,7 +100,7 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
         |s: &Segment| flights.iter().any(|f| f.run == s.run && f.span.from <= s.span.from && s.span.to <= f.span.to);
     let touching: Vec<Segment> = some.segments.iter().filter(|s| !within(s)).cloned().collect();
     let some = if touching.is_empty() { some } else { of_segments(stage, &some, touching) };
-    Ok(Stretches { windows: together(some, long), rungs, whole: first, approaches })
+    Ok(Stretches { windows: together(some, long), rungs, whole: first })
 }
 
 /// Root mean square over the segments that are missed: a few among many that are followed count like many.
