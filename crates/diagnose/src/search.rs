@@ -87,7 +87,7 @@ const TIE: f64 = 0.01;
 const CORRECTION: f64 = 0.05;
 /// Promise relative to what another refit has brought below which none is made.
 const RIVAL: f64 = 0.9;
-/// Share of the excess that cheap hypotheses promise, or bring where promises say little, where those that are dear to screen need not be.
+/// Share of the excess that cheap hypotheses promise where those that are dear to screen need not be.
 const SUFFICIENT: f64 = 0.5;
 /// Share of the excess that a set must leave for further screens in a round.
 const UNEXPLAINED: f64 = 0.05;
@@ -248,21 +248,19 @@ fn refit_best(
         let mut leaves_dear = (is_window || has_begun) && !dear.is_empty();
         // What is dear to screen is screened only where the rest leaves something.
         let promised = scores.first().map_or(0.0, |s| s.score);
-        // In windows that had to be shortened a promise says little of what a refit brings.
-        let is_steep = is_steep && is_window;
-        if leaves_dear && !is_steep && promised < SUFFICIENT * here.excess() {
+        if leaves_dear && promised < SUFFICIENT * here.excess() {
             leaves_dear = false;
             let further = screen_aloud(stage, plant, here, dear)?;
             scores.extend(further.into_iter().map(|s| Score { hypothesis: s.hypothesis + all.len(), ..s }));
             scores.sort_by(|a, b| b.score.total_cmp(&a.score));
             all.extend(dear.iter().cloned());
         }
-        let least = if is_steep { 0.0 } else { UNPROMISING * here.excess() };
+        // In windows that had to be shortened a promise says little of what a refit brings.
+        let least = if is_steep && is_window { 0.0 } else { UNPROMISING * here.excess() };
         let mut ready = refit_promising(stage, plant, here, (&all, &scores, least), (limits, round), &mut attempts)?;
         // Nor is it left out where what promised enough does not bring it.
         let left = here.excess() - brought_by(here, &ready);
-        let most_left = if is_steep { 1.0 - SUFFICIENT } else { UNEXPLAINED };
-        if leaves_dear && left > most_left * here.excess() {
+        if leaves_dear && left > UNEXPLAINED * here.excess() {
             let scores = screen_aloud(stage, plant, here, dear)?;
             let further = refit_promising(stage, plant, here, (dear, &scores, least), (limits, round), &mut attempts)?;
             ready.extend(further);
