@@ -9,9 +9,7 @@ use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::Hypothesis;
 use crate::linear::{Segment, Stage};
 use crate::lost::{self, FEW, NEAR, POOR_WINDOW};
-use crate::pace;
 use crate::plant::{Built, Plant};
-use crate::replay::Pace;
 use crate::stretches::STEEP;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -130,14 +128,10 @@ impl Standing {
 
     fn climb(&self, stage: &Stage<'_>, plant: &Plant, mut windows: Fit, effort: Effort) -> Result<Self, DiagnoseError> {
         let mut rungs = self.rungs.clone();
-        // What windows add up to over longer ones may need finer steps than each of them does.
-        let mut stage = *stage;
         while let Some(rung) = rungs.first() {
             let begun = begun_as(rung, &windows.segments);
-            let settled = settled(&stage, plant, windows.set.frozen(), begun)?;
+            let settled = settled(stage, plant, windows.set.frozen(), begun)?;
             let settled = Fit { set: windows.set.clone(), covariance: windows.covariance.clone(), ..settled };
-            stage.pace = finer(&stage, &settled);
-            let stage = &stage;
             let tried = fit_robustly(stage, plant, settled, effort)?;
             let found = tried.set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
             stage.work.watch.step(&format!("  windows of {:.3} s: error {:.3}, {found}", length_of(rung), tried.rms()));
@@ -147,7 +141,6 @@ impl Standing {
             windows = tried;
             rungs.remove(0);
         }
-        let stage = &stage;
         let set = windows.set.clone();
         let segments = begun_as(&self.whole.segments, &windows.segments);
         // Where windows had to be shortened, whole runs are far off until the longest windows follow well.
@@ -157,7 +150,6 @@ impl Standing {
             true => self.left_far(&windows, segments),
             false => Fit { set: set.clone(), ..self.followed(stage, plant, set.frozen(), &segments)? },
         };
-        let stage = &Stage { pace: if is_far { stage.pace } else { finer(stage, &whole) }, ..*stage };
         let mut standing = Self { windows, whole, rungs, reach: self.reach };
         let is_fair = standing.windows.rms() <= FAIR || lost::calc_share(stage, &standing.windows) <= lost::FEW;
         if !standing.follows() && !is_far && is_fair {
@@ -311,18 +303,6 @@ fn fit_whole(
         return fit_robustly(stage, plant, Fit { set, ..settled }, effort);
     }
     fit_in_turns(stage, plant, set, whole.segments.clone(), effort)
-}
-
-/// Steps that suit a model over what is near it.
-fn finer(stage: &Stage<'_>, fit: &Fit) -> Pace {
-    let near = fit.segments.par_iter().filter(|s| lost::is_near(stage, &fit.built, s)).cloned();
-    let near: Vec<Segment> = near.collect();
-    let found = pace::refine(stage, &fit.built, &near);
-    if found.pace != stage.pace {
-        let Pace { step, free } = found.pace;
-        stage.work.watch.step(&format!("  steps of {step:.3e} s, {free:.3e} s in free flight"));
-    }
-    found.pace
 }
 
 /// A fit whose starts are begun anew as long as that finds lower valleys for some.
