@@ -107,10 +107,17 @@ impl Ellipse {
     /// A deflection after `dt` of constant slip: it sticks until it meets the bound, and turns from there as if the bound
     /// were `pace` times as wide.
     fn advance(&self, s: &Vector3<f64>, slip: &Vector3<f64>, dt: f64, pace: f64) -> Vector3<f64> {
+        let held = self.hold(&(s + slip * dt));
+        if held.inside {
+            return held.s;
+        }
         let s = self.hold(s).s;
         let free = s + slip * dt;
-        let held = self.hold(&free);
-        if held.inside || (!self.is_round() && self.way == Return::Nearest) {
+        if !self.is_round() && self.way == Return::Nearest {
+            return self.hold(&free).s;
+        }
+        // It comes back more slowly than the bound that closes behind it.
+        if self.hold(&free).inside {
             return held.s;
         }
         let stuck = self.calc_share_inside(&s, &(free - s));
@@ -217,6 +224,19 @@ mod tests {
         // The damper sees the turn alone, c ω ρ = 40 · 40 · 32e-6 N: far below what the slip would give, c u = 0.8 N.
         let turn = rate.force + s * law.stiffness;
         assert!((turn.norm() - 0.051).abs() < 0.005, "{turn}");
+    }
+
+    /// A bound that closes takes along what comes back more slowly; what comes back faster leaves it at once. Cut first and moved then, a
+    /// bristle would end inside by what it slips in a piece: an error of first order, which a chain of bounces makes ten thousand times as large.
+    #[test]
+    fn behind_a_closing_bound_it_lies_on_it_or_leaves_it() {
+        let start = Vector3::x() * LAW.calc_reach(20.0, 0.0);
+        for (speed, expected) in [(1e-3, LAW.calc_reach(16.0, 0.0)), (20e-3, start.x - 20e-6)] {
+            let slip = Vector3::x() * -speed;
+            let path = SlipPath::between((slip, 20.0), (slip, 16.0), 1e-3);
+            let (s, _) = LAW.flow(&start, 0.0, &Vector3::x(), &path);
+            assert!((s.x - expected).abs() < 1e-18, "{} {expected}", s.x);
+        }
     }
 
     /// Explicit methods lose their hold where the normal force goes: there the bristle lies along the slip at its bound.
