@@ -10,7 +10,7 @@ use crate::start::Start;
 use crate::tape::Tape;
 use nalgebra::{Matrix3, Vector3};
 use scenario::measure::Quantity;
-use spatial::{Rot, Twist, Vec3, exp_rotation, log_rotation};
+use spatial::{Pose, Rot, Twist, Vec3, exp_rotation, log_rotation};
 
 /// Samples that a guess looks at, at least and at most.
 const NEAREST: [usize; 2] = [15, 480];
@@ -22,8 +22,11 @@ pub fn guess(built: &Built, tape: &Tape, time: f64) -> Start {
     let mut start = Start { time, ..Start::nominal(built) };
     for (v, vehicle) in built.model.vehicles.iter().enumerate().filter(|(_, v)| !v.base.is_held()) {
         let of_base = |of: usize, link: usize| of == v && link == 0;
+        let nominal = start.bases[v];
         guess_base(&mut start, v, tape, time, of_base);
-        mask_twist(&mut start.twists[v], &vehicle.base.mask());
+        let mask = vehicle.base.mask();
+        start.bases[v] = guided(&start.bases[v], &nominal, &mask);
+        mask_twist(&mut start.twists[v], &mask);
     }
     for reading in &tape.readings {
         match reading.quantity {
@@ -110,6 +113,16 @@ fn acceleration(v: usize, tape: &Tape, time: f64) -> Option<Twist> {
         reading.axes.iter().for_each(|&axis| twist.lin[axis] = 2.0 * curvature[axis]);
     }
     found
+}
+
+/// A measured pose on the guide that holds some of its components where they are nominally: off it a base would stay for the whole replay,
+/// by what noise made of the samples around the instant.
+fn guided(measured: &Pose, nominal: &Pose, mask: &[bool; 6]) -> Pose {
+    let turn = log_rotation(&(measured.rotation * nominal.rotation.inverse()));
+    let way = measured.translation.vector - nominal.translation.vector;
+    let free = |v: &Vec3, first: usize| Vec3::from_fn(|axis, _| if mask[first + axis] { v[axis] } else { 0.0 });
+    let place = nominal.translation.vector + free(&way, 3);
+    Pose::from_parts(place.into(), exp_rotation(&free(&turn, 0)) * nominal.rotation)
 }
 
 /// The components of a twist that a guide holds are zero.
@@ -221,6 +234,19 @@ mod tests {
             ticks: Vec::new(),
             span: (0.0, 2.0),
         }
+    }
+
+    #[test]
+    fn a_guess_lies_on_the_guide() {
+        let nominal = Pose::from_parts(Vec3::new(1.0, 2.0, 0.25).into(), exp_rotation(&Vec3::new(0.0, 0.0, 0.3)));
+        let noise = exp_rotation(&Vec3::new(4e-4, -3e-4, 0.0));
+        let measured =
+            Pose::from_parts(Vec3::new(1.5, 2.5, 0.2502).into(), noise * exp_rotation(&Vec3::new(0.0, 0.0, 0.8)));
+        let found = guided(&measured, &nominal, &[false, false, true, true, true, false]);
+        assert_eq!(found.translation.vector, Vec3::new(1.5, 2.5, 0.25));
+        // The tilt's square is in the turn.
+        assert!((found.rotation.scaled_axis() - Vec3::new(0.0, 0.0, 0.8)).norm() < 1e-6, "{}", found.rotation);
+        assert!((guided(&measured, &nominal, &[true; 6]).rotation.angle_to(&measured.rotation)) < 1e-12);
     }
 
     #[test]
