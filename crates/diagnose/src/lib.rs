@@ -22,6 +22,7 @@ pub mod judge;
 pub mod linear;
 pub mod locate;
 mod lost;
+mod mounts;
 mod number;
 mod output;
 mod pace;

@@ -2,7 +2,7 @@
 
 use crate::error::DiagnoseError;
 use record::{RecordedRun, RecordingSet};
-use scenario::measure::{Gauge, MeasureError, Quantity, SensorModel};
+use scenario::measure::{Gauge, MeasureError, Mount, Quantity, SensorModel};
 use scenario::spec::{Effect, ParamValue};
 use scenario::{Scenario, Stock};
 use sim::{Actuator, ActuatorKind, DriveAxis, DrivePath, Model, State};
@@ -32,6 +32,8 @@ pub struct Built {
     pub start: State,
     /// What each channel reads, and the faults of its sensor.
     pub sensors: Vec<(String, Gauge, SensorModel)>,
+    /// Elastic mounts.
+    pub mounts: Vec<Mount>,
     /// Longest delay of an actuator, s.
     pub delay: f64,
 }
@@ -104,6 +106,7 @@ impl Plant {
             by_run: self.drives.iter().map(|paths| Arc::new(model.with_drive_paths(paths.iter().cloned()))).collect(),
             start: mission.world.state().clone(),
             sensors: self.channels.iter().filter_map(sensor).collect(),
+            mounts: Mount::all(&model),
             delay: delays.fold(0.0, f64::max),
             model,
         })

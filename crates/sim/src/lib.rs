@@ -61,4 +61,4 @@ pub use mechanism::{
 pub use model::{Base, Grain, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, Vehicle, VehicleSpec};
 pub use run::{Controller, Flow, NoControl, Observer};
 pub use state::{Account, ContactMemory, Pending, State, Work};
-pub use world::{TouchReport, World};
+pub use world::{Rest, TouchReport, World};

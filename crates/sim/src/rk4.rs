@@ -19,7 +19,7 @@ use crate::state::{Account, ContactMemory, State};
 use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
 use crate::workspace::Workspace;
 use friction::{BrushRate, Trial, carry};
-use spatial::{Mat3, Twist, Vec3, Wrench, log_rotation, rotation_rate_of_vector};
+use spatial::{Mat3, Twist, Vec3, Wrench, rotation_rate_of_vector};
 
 /// Scratch of the stages.
 #[derive(Clone, Debug, Default)]
@@ -27,6 +27,8 @@ pub(crate) struct Stages {
     start: State,
     rate: Rates,
     sum: Rates,
+    /// Per vehicle: rotation vector of the base since the step's start, at the present stage.
+    turned: Vec<Vec3>,
     slots: Vec<ContactMemory>,
     tracks: Vec<Track>,
     node: usize,
@@ -77,7 +79,8 @@ impl Rates {
 
 impl Stages {
     pub fn new(model: &Model) -> Self {
-        let mut stages = Self { start: State::new(model), ..Self::default() };
+        let turned = vec![Vec3::zeros(); model.vehicles.len()];
+        let mut stages = Self { start: State::new(model), turned, ..Self::default() };
         stages.rate.reset(model, 0);
         stages.sum.reset(model, 0);
         stages
@@ -95,7 +98,9 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     rk.start.copy_from(state);
     for (index, (node, weight)) in STAGES.into_iter().enumerate() {
         ws.since = Some(node * h);
+        rk.turned.fill(Vec3::zeros());
         if index > 0 {
+            rk.turned.iter_mut().zip(&rk.rate.base).for_each(|(turned, rate)| *turned = rate.ang * (node * h));
             let from = From { start: &rk.start, rate: &rk.rate, slots: &rk.slots };
             place(model, state, &mut ws.displacement, &from, node * h);
             ws.update_positions(model, state);
@@ -207,6 +212,10 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
         if !solve::solve_joints(model, ws) {
             ws.v_gain.fill(f64::NAN);
         }
+        for (rest, _) in &ws.held {
+            let share = std::mem::take(&mut ws.v_gain[rest.coordinate]).abs() / rest.acceleration;
+            ws.unrest = if share.is_nan() { f64::INFINITY } else { ws.unrest.max(share) };
+        }
         rk.rate.v.copy_from_slice(&ws.v_gain);
         state.work.solves += 1;
     }
@@ -224,9 +233,8 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     drive::add_rates(model, state, ws, (&rk.rate.momentum, &mut rk.rate.account), &rk.rate.v);
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let (q, v) = (vehicle.q_range(), vehicle.v_range());
-        let turned = log_rotation(&(state.bases[i].rotation * rk.start.bases[i].rotation.inverse()));
         let twist = ws.kin[i].vel[0];
-        rk.rate.base[i] = Twist::new(rotation_rate_of_vector(&turned, &twist.ang), twist.lin);
+        rk.rate.base[i] = Twist::new(rotation_rate_of_vector(&rk.turned[i], &twist.ang), twist.lin);
         let xi = &mut ws.displacement[v.clone()];
         vehicle.tree.calc_difference(&rk.start.q[q.clone()], &state.q[q.clone()], xi);
         vehicle.tree.calc_displacement_rate(&rk.start.q[q], xi, &state.v[v.clone()], &mut rk.rate.xi[v]);

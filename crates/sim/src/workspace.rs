@@ -7,7 +7,7 @@ use crate::model::{Base, Model, Vehicle};
 use crate::state::State;
 use contact::{ContactPoint, Detector};
 use multibody::{Dynamics, Kinematics, calc_locked_inertia, calc_momentum};
-use spatial::{Frame, SpatialMatrix, Twist, Vec3, Wrench};
+use spatial::{Frame, Inertia, SpatialMatrix, Twist, Vec3, Wrench};
 
 /// Scratch of one world; holds nothing that a result depends on.
 #[derive(Debug)]
@@ -47,6 +47,9 @@ pub(crate) struct Workspace {
     pub q_start: Vec<f64>,
     pub queries_start: u64,
     pub v_gain: Vec<f64>,
+    /// Joints that are held in this step, with their rates before, and the largest share of what they bear that would move one.
+    pub held: Vec<(crate::world::Rest, f64)>,
+    pub unrest: f64,
     pub v_mid: Vec<f64>,
     pub tau: Vec<f64>,
     pub zero: Vec<f64>,
@@ -97,6 +100,8 @@ impl Workspace {
             drive_gain: vec![Twist::default(); model.vehicles.len()],
             drive_start: Vec::with_capacity(model.drives.len()),
             v_gain: vec![0.0; nv],
+            held: Vec::new(),
+            unrest: 0.0,
             v_mid: vec![0.0; nv],
             tau: vec![0.0; nv],
             zero: vec![0.0; nv],
@@ -174,9 +179,21 @@ fn calc_base_twist(vehicle: &Vehicle, kin: &Kinematics, momentum: &Wrench, carri
     let relative = if vehicle.tree.nv == 0 { Wrench::default() } else { calc_momentum(kin) };
     let h = about_anchor - relative - *carried;
     match vehicle.base {
+        Base::Only(PLANAR) => solve_planar(&locked, &h),
         Base::Free => locked.twist_of(&h).unwrap_or(Twist::new(Vec3::repeat(f64::NAN), Vec3::repeat(f64::NAN))),
         _ => solve_masked(&SpatialMatrix::from(&locked), &h, &vehicle.base.mask()),
     }
+}
+
+/// The free slots of a base on a level floor: spin about z, and both speeds along it.
+const PLANAR: [bool; 6] = [false, false, true, true, true, false];
+
+/// The planar twist whose momentum is `h`: f = m v + ω ẑ × c and h_z = I ω + c × v, c the first moment, solved for ω first.
+fn solve_planar(locked: &Inertia, h: &Wrench) -> Twist {
+    let (c, f, mass) = (&locked.mc, &h.force, locked.mass);
+    let about_com = locked.rot[(2, 2)] - (c.x * c.x + c.y * c.y) / mass;
+    let spin = (h.moment.z - (c.x * f.y - c.y * f.x) / mass) / about_com;
+    Twist::new(Vec3::new(0.0, 0.0, spin), Vec3::new((f.x + spin * c.y) / mass, (f.y - spin * c.x) / mass, 0.0))
 }
 
 /// The twist in the free slots whose momentum there is `h`: UᵀU of the free rows alone, which are few.
@@ -225,4 +242,19 @@ pub(crate) fn world_wrench(vehicle: &Vehicle, anchor: &Vec3, about_anchor: &Wren
     let free = |v: &Vec3, at: usize| Vec3::from_fn(|i, _| if mask[at + i] { v[i] } else { 0.0 });
     let force = free(&about_anchor.force, 3);
     Wrench::new(free(&(about_anchor.moment + anchor.cross(&force)), 0), force)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spatial::Mat3;
+
+    #[test]
+    fn a_planar_base_moves_as_the_masked_solution_says() {
+        let tensor = Mat3::new(3.0, 0.1, -0.2, 0.1, 4.0, 0.3, -0.2, 0.3, 5.0);
+        let locked = Inertia::from_com(12.0, &Vec3::new(0.3, -0.4, 0.2), &tensor);
+        let h = Wrench::new(Vec3::new(0.7, -1.1, 2.3), Vec3::new(0.4, 1.9, -0.8));
+        let (short, long) = (solve_planar(&locked, &h), solve_masked(&SpatialMatrix::from(&locked), &h, &PLANAR));
+        assert!((short.ang - long.ang).norm() + (short.lin - long.lin).norm() < 1e-14, "{short:?} {long:?}");
+    }
 }

@@ -51,6 +51,17 @@ pub struct TouchReport {
     pub sticks: bool,
 }
 
+/// A joint that a free flight may hold: it is at rest on a stiff spring, whose swing would forbid long steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rest {
+    /// Index into the world's `v`.
+    pub coordinate: usize,
+    /// Speed (m/s, rad/s) up to which it counts as at rest.
+    pub speed: f64,
+    /// Acceleration (m/s², rad/s²), free of its hold, up to which it may be held.
+    pub acceleration: f64,
+}
+
 /// Speeds (m/s) beyond which a run counts as diverged.
 const MAX_SPEED: f64 = 1e6;
 
@@ -193,6 +204,37 @@ impl World {
             self.refresh();
         }
         Ok(false)
+    }
+
+    /// As [`World::advance_free`], with some joints held where they are, under Runge–Kutta. Where one of them moves, or would be set in
+    /// motion by more than it may, the world stays as it was, and the answer is `false`.
+    ///
+    /// Momentum is untouched: the vehicle moves on as one with them.
+    pub fn advance_resting(&mut self, h: f64, rests: &[Rest]) -> Result<bool, StepError> {
+        let moves = |rest: &Rest| self.state.v[rest.coordinate].abs() > rest.speed;
+        if self.model.integrator != Integrator::RungeKutta4 || rests.iter().any(moves) || !self.ws.touches.is_empty() {
+            return Ok(false);
+        }
+        self.ws.held.clear();
+        for rest in rests {
+            let v = std::mem::take(&mut self.state.v[rest.coordinate]);
+            self.ws.held.push((*rest, v));
+        }
+        (self.is_fresh, self.ws.unrest) = (false, 0.0);
+        let flown = self.advance_free(h);
+        let held = std::mem::take(&mut self.ws.held);
+        if matches!(flown, Ok(true)) && self.ws.unrest <= 1.0 {
+            self.ws.held = held;
+            self.ws.held.clear();
+            return Ok(true);
+        }
+        if matches!(flown, Ok(true)) {
+            self.state.copy_from(&self.ws.backup);
+        }
+        held.iter().for_each(|(rest, v)| self.state.v[rest.coordinate] = *v);
+        self.is_fresh = false;
+        self.refresh();
+        flown.map(|_| false)
     }
 
     /// The effects' memory in the coordinates of [`crate::memory_layout`], at the last refreshed state.

@@ -24,7 +24,7 @@ pub fn exp_rotation(phi: &Vec3) -> Rot {
         let half = half_sq.sqrt();
         (half.cos(), half.sin() / half)
     };
-    Unit::new_normalize(Quaternion::from_parts(real, 0.5 * sinc * phi))
+    Unit::new_unchecked(Quaternion::from_parts(real, 0.5 * sinc * phi))
 }
 
 /// Rotation vector of `rot`, of length at most π; the inverse of [`exp_rotation`].

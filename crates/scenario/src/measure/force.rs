@@ -46,6 +46,18 @@ pub struct Mount {
 }
 
 impl Mount {
+    /// Every mount of a model.
+    pub fn all(model: &Model) -> Vec<Self> {
+        let bodies = model.vehicles.iter().map(|v| v.tree.bodies.len()).sum();
+        (0..bodies).filter_map(|body| Self::of(model, body)).collect()
+    }
+
+    /// Mass of the tip, kg.
+    pub fn mass(&self, model: &Model) -> f64 {
+        let tree = &model.vehicles[self.vehicle].tree;
+        tree.bodies[tree.links[self.link].body].inertia.mass
+    }
+
     /// The mount that carries a global body; none where it is not on one.
     pub(super) fn of(model: &Model, body: usize) -> Option<Self> {
         let (vehicle, own) = model

@@ -20,7 +20,7 @@ mod force;
 mod resolve;
 mod sensor;
 
-pub use force::ForceGauge;
+pub use force::{ForceGauge, Mount};
 pub use sensor::SensorModel;
 
 use crate::spec::Scenario;
@@ -131,8 +131,13 @@ impl Gauge {
 
     /// Whether it reads zero as long as nothing touches: a force sensor right behind its part, not behind an elastic mount.
     pub fn rests_untouched(&self) -> bool {
-        let is_bare = |gauge: &ForceGauge| matches!(gauge, ForceGauge::Contact { mount: None, .. });
-        matches!(&self.quantity, Quantity::Force(g) | Quantity::Torque(g) if is_bare(g))
+        self.reads_contact() && !self.is_behind_mount()
+    }
+
+    /// Whether it is a force sensor behind an elastic mount: untouched it reads zero only once that has come to rest.
+    pub fn is_behind_mount(&self) -> bool {
+        let is_behind = |gauge: &ForceGauge| matches!(gauge, ForceGauge::Contact { mount: Some(_), .. });
+        matches!(&self.quantity, Quantity::Force(g) | Quantity::Torque(g) if is_behind(g))
     }
 }
 
