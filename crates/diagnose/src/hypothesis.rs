@@ -331,7 +331,8 @@ impl Hypothesis {
             "joint-friction-asymmetry" => vec![here("joint-coulomb-friction", vec![0.5 * (x[0] + x[1])])],
             "joint-backlash" => vec![here("joint-elasticity", vec![(-x[1]).exp(), x[2]])],
             "tether-stiffness" => vec![here("linear-drag", vec![x[4]]), at_contact(AT_CONTACT, vec![x[4]])],
-            "friction-stribeck" => vec![here("friction-coefficient", vec![x[1]])],
+            // A level that falls at no speed that occurs is the static one, and one that falls at once the kinetic one.
+            "friction-stribeck" => [x[0] + x[1], x[1]].map(|mu| here("friction-coefficient", vec![mu])).to_vec(),
             "friction-anisotropy" => vec![here("friction-coefficient", vec![x[0]])],
             _ if self.is_bias_of_place() => vec![moved(1.0), moved(-1.0)],
             _ => Vec::new(),

@@ -1,7 +1,7 @@
 //! Prediction errors: every run, free and in windows, under the nominal and the corrected model, each with its own starts.
 
 use crate::error::DiagnoseError;
-use crate::fit::{Effort, Fit, fit};
+use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::linear::{Segment, Stage};
 use crate::lost;
 use crate::plant::Plant;
@@ -89,7 +89,10 @@ pub fn judge(
             return Ok((predict(windowed), predict(whole)));
         }
         let mut runs = first(&windows);
-        begin_from(&mut runs, &of_runs.segments, !is_last(known));
+        begin_from(&mut runs, &of_runs.segments, true);
+        if is_last(known) {
+            runs = begun_with(few, all, plant, &set, runs)?;
+        }
         let mut whole = follow_with(stage, plant, set.clone(), &runs, effort)?;
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
         if is_last(known) && known.rms() < PLAUSIBLE {
@@ -121,6 +124,23 @@ pub fn judge(
 const GLANCES: usize = 2;
 /// Root mean square over whole runs up to which starts are doubted before the model is.
 const PLAUSIBLE: f64 = 8.0;
+
+/// Runs whose starts are known have these from all samples; those of the others are estimated from few first.
+fn begun_with(
+    few: &Stage<'_>,
+    all: &Stage<'_>,
+    plant: &Plant,
+    set: &EffectSet,
+    runs: Vec<Segment>,
+) -> Result<Vec<Segment>, DiagnoseError> {
+    let (known, open): (Vec<Segment>, Vec<Segment>) = runs.into_iter().partition(|r| r.columns.is_some());
+    let few = Stage { pace: all.pace, ..*few };
+    let begun = follow_with(&few, plant, set.clone(), &open, Effort::JUDGED)?;
+    let afresh = |s: Segment| Segment { columns: None, ..s };
+    let mut runs: Vec<Segment> = known.into_iter().chain(begun.segments.into_iter().map(afresh)).collect();
+    runs.sort_by_key(|r| r.run);
+    Ok(runs)
+}
 
 /// Takes the starts of segments that are known already, and their derivatives where these need not be fresh.
 fn begin_from(segments: &mut [Segment], known: &[Segment], takes_columns: bool) {

@@ -87,6 +87,8 @@ const TIE: f64 = 0.01;
 const CORRECTION: f64 = 0.05;
 /// Promise relative to what another refit has brought below which none is made.
 const RIVAL: f64 = 0.9;
+/// The same relative to the largest promise, where no refit leaves nothing.
+const EQUAL: f64 = 0.7;
 /// Share of the excess that cheap hypotheses promise where those that are dear to screen need not be.
 const SUFFICIENT: f64 = 0.5;
 /// Share of the excess that a set must leave for further screens in a round.
@@ -377,10 +379,14 @@ fn refit_promising(
             attempts.push(Attempt::new(round, h, score, here));
         }
         // A promise is seldom exceeded: what promises less than another has brought already is left alone; where that one leaves something
-        // too, promises are compared.
+        // too, promises are compared, which are rough.
         let is_open = ready.iter().all(|r| r.1.is_significant());
-        let rival = brought_by(here, &ready).min(if is_open { most } else { f64::INFINITY });
-        let is_hopeless = score.score < RIVAL * rival && !h.has_valleys();
+        let rival = if is_open {
+            (RIVAL * brought_by(here, &ready)).min(EQUAL * most)
+        } else {
+            RIVAL * brought_by(here, &ready)
+        };
+        let is_hopeless = score.score < rival && !h.has_valleys();
         if !picked.iter().any(|p| std::ptr::eq(*p, score)) || is_hopeless {
             continue;
         }
