@@ -297,13 +297,13 @@ fn iterate(
         is_idle: false,
         wants_fresh,
     };
-    if promised < effort.enough(now) {
-        now.converged = !was_blind;
-        return Ok(went(damping, false));
-    }
     for (segment, linear) in now.segments.iter_mut().zip(&linear) {
         segment.columns.clone_from(&linear.columns);
         segment.steps.clone_from(&linear.steps);
+    }
+    if promised < effort.enough(now) {
+        now.converged = !was_blind;
+        return Ok(went(damping, false));
     }
     for trial in 0..DAMPINGS {
         if trial == 2 && was_known {

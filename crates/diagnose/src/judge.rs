@@ -65,13 +65,16 @@ pub fn judge(
         let set = known.set.frozen();
         let built = plant.build(&set.effects())?;
         // What a wrong model is off by takes no more exact starts.
+        let model = if is_last(known) { "corrected" } else { "nominal" };
+        let say = |what: &str, fit: &Fit| stage.work.watch.step(&format!("{model} model, {what}: error {:.3}", fit.rms()));
         let effort = if is_last(known) { Effort::JUDGED } else { Effort { iterations: GLANCES, ..Effort::JUDGED } };
         let mut windows = cut(&built, stage.tapes, Some(window), |_| true);
-        begin_from(&mut windows, &known.segments, !is_last(known));
+        begin_from(&mut windows, &known.segments);
         let first = |windows: &[Segment]| joined(windows, stage.tapes);
         let of_runs = if is_last(known) { found } else { nominal[1] };
         let restarted = |windows: Vec<Segment>| -> Result<Fit, DiagnoseError> {
             let windowed = fit(stage, plant, set.clone(), windows, effort)?;
+            say("windows", &windowed);
             if !is_last(known) || windowed.rms() >= PLAUSIBLE {
                 return Ok(windowed);
             }
@@ -83,28 +86,33 @@ pub fn judge(
             let windowed = restarted(windows)?;
             let mut runs = first(&windowed.segments);
             if !is_last(known) {
-                begin_from(&mut runs, &of_runs.segments, true);
+                begin_from(&mut runs, &of_runs.segments);
             }
+            say("windows, begun anew", &windowed);
             let whole = follow_with(stage, plant, set.clone(), &runs, effort)?;
+            say("whole runs", &whole);
             return Ok((predict(windowed), predict(whole)));
         }
         let mut runs = first(&windows);
-        begin_from(&mut runs, &of_runs.segments, true);
+        begin_from(&mut runs, &of_runs.segments);
         if is_last(known) {
             runs = begun_with(few, all, plant, &set, runs)?;
         }
         let mut whole = follow_with(stage, plant, set.clone(), &runs, effort)?;
+        say("whole runs", &whole);
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
         if is_last(known) && known.rms() < PLAUSIBLE {
             let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED, lost::POOR_RUN));
             whole = fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?;
         }
+        say("whole runs, begun anew", &whole);
         let near = |whole: &Fit| -> Vec<Segment> {
             whole.segments.iter().filter(|s| lost::is_near(stage, &built, s)).cloned().collect()
         };
         let followed = near(&whole);
         stage.along(&built, &followed, &mut windows);
         let mut windowed = restarted(windows)?;
+        say("windows, begun anew", &windowed);
         if whole.rms() >= lost::NEAR && is_last(known) {
             whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), effort)?;
             let found = near(&whole);
@@ -142,13 +150,13 @@ fn begun_with(
     Ok(runs)
 }
 
-/// Takes the starts of segments that are known already, and their derivatives where these need not be fresh.
-fn begin_from(segments: &mut [Segment], known: &[Segment], takes_columns: bool) {
+/// Takes the starts of segments that are known already, and their derivatives.
+fn begin_from(segments: &mut [Segment], known: &[Segment]) {
     for segment in segments {
         let begins_alike = |k: &&Segment| k.run == segment.run && (k.span.from - segment.span.from).abs() < 1e-9;
         let Some(known) = known.iter().find(begins_alike) else { continue };
         segment.start.clone_from(&known.start);
-        if takes_columns && (known.span.to - segment.span.to).abs() < 1e-9 && known.weight == segment.weight {
+        if (known.span.to - segment.span.to).abs() < 1e-9 && known.weight == segment.weight {
             segment.columns.clone_from(&known.columns);
         }
     }

@@ -121,10 +121,26 @@ impl Stage<'_> {
 
     /// Where derivatives are taken, and the residuals there; `r` are those of a prediction.
     pub(crate) fn beside(&self, built: &Built, segment: &Segment, r: &DVector<f64>) -> (Self, DVector<f64>) {
-        let coarse = self.coarser();
-        let base = coarse.residuals(built, segment);
-        let moved = (&base - r).norm_squared() / r.len().max(1) as f64;
-        if moved < ALIKE * ALIKE { (coarse, base) } else { (*self, r.clone()) }
+        self.beside_within(built, (segment, r), [self.coarser()], ALIKE)
+    }
+
+    /// Where derivatives are taken that only lead towards a start: their error has to be small against what is left to reduce.
+    pub(crate) fn towards(&self, built: &Built, segment: &Segment, r: &DVector<f64>) -> (Self, DVector<f64>) {
+        let left = (r.norm_squared() / r.len().max(1) as f64).sqrt();
+        self.beside_within(built, (segment, r), [self.coarser().coarser(), self.coarser()], ALIKE * left.max(1.0))
+    }
+
+    /// The first of some coarser stages that moves a residual by less than a bound, and what it is there; else this one.
+    fn beside_within<const N: usize>(
+        &self,
+        built: &Built,
+        (segment, r): (&Segment, &DVector<f64>),
+        coarser: [Self; N],
+        bound: f64,
+    ) -> (Self, DVector<f64>) {
+        let is_near = |base: &DVector<f64>| (base - r).norm_squared() < bound * bound * r.len().max(1) as f64;
+        let bases = coarser.into_iter().map(|stage| (stage, stage.residuals(built, segment)));
+        bases.into_iter().find(|(_, base)| is_near(base)).unwrap_or_else(|| (*self, r.clone()))
     }
 
     /// Residuals of a segment; infinite where the replay left the range of numbers.

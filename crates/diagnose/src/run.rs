@@ -26,6 +26,7 @@ use crate::tape::{Tape, load};
 use crate::tell;
 use crate::uncertainty::{self, Uncertainty};
 use crate::work::{Watch, Work};
+use rayon::prelude::*;
 use record::{RecordingSet, Role, Severity};
 use scenario::Scenario;
 use std::time::Instant;
@@ -118,7 +119,7 @@ pub fn diagnose(
     watch.step(&format!("error {:.3} of all samples", found.rms()));
     clock.stage("predict every run", 0.85);
     let judgement = judge((&Stage { pace, ..thin }, &stage), &plant, ([&nominal, &whole], &found), (window, follows))?;
-    let left = left_by(&thin, &plant, (&nominal, &located), &judgement)?;
+    let left = left_by((&Stage { pace, ..thin }, &thin), &plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
     let verdict = verdict(&judgement, &found, follows);
     // What explains nothing is not told, nor how sure its numbers are.
@@ -162,7 +163,7 @@ fn suited(stage: &Stage<'_>, standing: &Standing, chosen: Discretisation) -> Dis
 
 /// What the corrected model leaves at the places that are drawn, as forces on the nominal one.
 fn left_by(
-    stage: &Stage<'_>,
+    (coarse, stage): (&Stage<'_>, &Stage<'_>),
     plant: &Plant,
     (nominal, located): (&Fit, &Located),
     judgement: &Judgement,
@@ -180,12 +181,12 @@ fn left_by(
         )
     };
     let segments: Vec<Segment> = nominal.segments.iter().map(|s| Segment { columns: None, ..s.clone() }).collect();
-    let residuals: Vec<_> = segments.iter().map(residuals_of).collect();
+    let residuals: Vec<_> = segments.par_iter().map(residuals_of).collect();
     let drawn = curves::drawn(located);
     let mut places = located.places.clone();
     places.iter_mut().enumerate().filter(|(p, _)| drawn.iter().all(|d| d.0 != *p)).for_each(|(_, p)| p.columns.clear());
     let nominal = Fit { segments, ..nominal.clone() };
-    locate_in(stage, plant, &nominal, places, Some(&residuals)).map(Some)
+    locate_in(coarse, plant, &nominal, places, Some(&residuals)).map(Some)
 }
 
 /// The last fit, and what is left to do where there are more samples than it looked at.

@@ -94,7 +94,7 @@ impl Stage<'_> {
             self.descend(built, &mut now, &mut r, (&mut damping, effort.share));
         }
         while now.iterations < effort.iterations && !now.converged {
-            let (coarse, base) = self.beside(built, &now.segment, &r);
+            let (coarse, base) = self.towards(built, &now.segment, &r);
             let sizes = now.segment.steps.of(&all);
             let (columns, used): (Vec<DVector<f64>>, Vec<f64>) =
                 coarse.quotients(built, &now.segment, &base, (&all, &sizes)).into_iter().unzip();

@@ -72,11 +72,12 @@ pub(crate) fn estimate(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<
 /// Products of one segment: of its parameters' columns, of what a step of half the length moves, and of its residual.
 fn linearised(stage: &Stage<'_>, found: &Fit, segment: &Segment, variations: &[Variation]) -> SegmentLinear {
     let r = stage.residuals(&found.built, segment);
-    let start = stage.columns_of(&found.built, segment, &r);
+    let (coarse, base) = stage.beside(&found.built, segment, &r);
+    let start = coarse.columns_of(&found.built, segment, &base);
     let finer = Stage { pace: pace::half(stage.pace), ..*stage };
     let moved = finer.residuals(&found.built, segment) - &r;
     let moved = if moved.iter().all(|x| x.is_finite()) { moved } else { DVector::zeros(r.len()) };
-    let columns: Vec<DVector<f64>> = variations.par_iter().map(|v| stage.column(v, segment, &r)).collect();
+    let columns: Vec<DVector<f64>> = variations.par_iter().map(|v| coarse.column(v, segment, &base)).collect();
     let starts: Vec<&DVector<f64>> = start.columns.iter().collect();
     let others: Vec<&DVector<f64>> = columns.iter().chain([&moved, &r]).collect();
     SegmentLinear { columns: Some(start.clone()), ..eliminate(&starts, &others, &start.freedoms) }

@@ -20,6 +20,7 @@ pub struct Dynamics {
     /// Wrenches that the parents' joints transmit, about the anchor; the first is the base's total.
     pub wrench: Vec<Wrench>,
     pub(crate) composite: Vec<SpatialMatrix>,
+    locked: Vec<Inertia>,
     pub(crate) force: Vec<Wrench>,
     pub(crate) articulated: crate::aba::ArticulatedScratch,
 }
@@ -32,6 +33,7 @@ impl Dynamics {
             acc: vec![Twist::default(); n],
             wrench: vec![Wrench::default(); n],
             composite: vec![SpatialMatrix::default(); n],
+            locked: vec![Inertia::default(); n],
             force: vec![Wrench::default(); 6],
             articulated: crate::aba::ArticulatedScratch::new(tree),
         }
@@ -107,34 +109,63 @@ impl Dynamics {
         m: &mut [f64],
         stride: usize,
     ) {
-        for (body, inertia) in kin.inertia.iter().enumerate() {
-            self.composite[body] = SpatialMatrix::from(inertia);
-            if let Some(e) = extra.get(body) {
-                self.composite[body] += *e;
-            }
-        }
         let n = 6 + tree.nv;
         for row in m.chunks_mut(stride).take(n) {
             row[..n].fill(0.0);
         }
-        for j in (0..tree.joints.len()).rev() {
-            self.add_joint_rows(tree, kin, j, m, stride);
-            let composite = self.composite[j + 1];
-            self.composite[tree.bodies[j + 1].parent] += composite;
+        if extra.is_empty() {
+            self.add_rigid(tree, kin, m, stride);
+        } else {
+            self.add_stiffened(tree, kin, extra, m, stride);
         }
         for joint in tree.joints.iter().filter(|j| j.armature != 0.0 && !j.is_mimic) {
             for k in 6 + joint.v_index..6 + joint.v_index + joint.width {
                 m[k * stride + k] += joint.armature;
             }
         }
+    }
+
+    /// Composites are inertias: ten numbers each.
+    fn add_rigid(&mut self, tree: &Tree, kin: &Kinematics, m: &mut [f64], stride: usize) {
+        self.locked.copy_from_slice(&kin.inertia);
+        for (j, joint) in tree.joints.iter().enumerate().rev() {
+            let locked = self.locked[j + 1];
+            for k in 0..joint.width {
+                self.force[k] = locked.momentum(&kin.screws[joint.column + k]);
+            }
+            self.add_joint_rows(tree, kin, j, m, stride);
+            self.locked[tree.bodies[j + 1].parent] += locked;
+        }
+        write_base_block(&SpatialMatrix::from(&self.locked[0]), m, stride);
+    }
+
+    /// What stiffness adds to them is any symmetric matrix.
+    fn add_stiffened(
+        &mut self,
+        tree: &Tree,
+        kin: &Kinematics,
+        extra: &[SpatialMatrix],
+        m: &mut [f64],
+        stride: usize,
+    ) {
+        for ((composite, inertia), extra) in self.composite.iter_mut().zip(&kin.inertia).zip(extra) {
+            *composite = SpatialMatrix::from(inertia);
+            *composite += *extra;
+        }
+        for (j, joint) in tree.joints.iter().enumerate().rev() {
+            let composite = self.composite[j + 1];
+            for k in 0..joint.width {
+                self.force[k] = composite.mul(&kin.screws[joint.column + k]);
+            }
+            self.add_joint_rows(tree, kin, j, m, stride);
+            self.composite[tree.bodies[j + 1].parent] += composite;
+        }
         write_base_block(&self.composite[0], m, stride);
     }
 
+    /// Rows and columns of a joint, whose unit gains take the wrenches `force` of all that hangs on it.
     fn add_joint_rows(&mut self, tree: &Tree, kin: &Kinematics, j: usize, m: &mut [f64], stride: usize) {
         let joint = &tree.joints[j];
-        for k in 0..joint.width {
-            self.force[k] = self.composite[j + 1].mul(&kin.screws[joint.column + k]);
-        }
         for k in 0..joint.width {
             let (row, force) = (6 + joint.v_index + k, self.force[k]);
             for l in 0..joint.width {

@@ -86,8 +86,13 @@ impl Islands {
 
 /// Assembles and factors every island's matrix; returns `false` if one is not positive definite.
 pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
-    ws.extra.fill(SpatialMatrix::default());
-    for touch in &ws.touches {
+    // Forces that do not answer to gains, as under Runge–Kutta, stiffen nothing.
+    let answers = |touch: &Touch| touch.out.g != Mat3::zeros();
+    let is_stiffened = !ws.couplings.is_empty() || !ws.pivots.is_empty() || ws.touches.iter().any(answers);
+    if is_stiffened {
+        ws.extra.fill(SpatialMatrix::default());
+    }
+    for touch in ws.touches.iter().filter(|t| answers(t)) {
         for body in [touch.body_a, touch.body_b] {
             if let Some(&(vehicle, _)) = model.owners.get(body) {
                 let r = touch.point - ws.kin[vehicle].anchor;
@@ -99,7 +104,7 @@ pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
     pivots::add_stiffness(model, ws, h);
     ws.islands.regroup(model, &ws.touches, &ws.couplings);
     for i in 0..model.vehicles.len() {
-        add_vehicle(model, ws, i, h);
+        add_vehicle(model, ws, i, (h, is_stiffened));
     }
     add_cross_terms(model, ws);
     for k in 0..ws.couplings.len() {
@@ -116,13 +121,14 @@ pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
     size.iter().zip(start.iter()).all(|(n, at)| cholesky(&mut matrix[*at..*at + n * padded(*n)], *n))
 }
 
-fn add_vehicle(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
+fn add_vehicle(model: &Model, ws: &mut Workspace, i: usize, (h, is_stiffened): (f64, bool)) {
     let vehicle = &model.vehicles[i];
     if vehicle.tree.nv == 0 && (vehicle.base.is_held() || ws.islands.leaves_rigid) {
         return;
     }
     let n = 6 + vehicle.tree.nv;
-    let extra = &ws.extra[vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len()];
+    let bodies = vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len();
+    let extra = if is_stiffened { &ws.extra[bodies] } else { &[] };
     let islands = &mut ws.islands;
     ws.dynamics[i].calc_mass_matrix(&vehicle.tree, &ws.kin[i], extra, &mut islands.scratch[..n * n], n);
     let group = islands.group[i];
