@@ -154,7 +154,7 @@ impl Effort {
     /// For starts alone.
     pub const STARTS: Self = Self { iterations: 6, share: 1e-3, floor: 0.0, reuse: false };
     /// For starts that are only judged by.
-    pub const JUDGED: Self = Self { iterations: 5, share: 1e-2, floor: 0.0, reuse: false };
+    pub const JUDGED: Self = Self { iterations: 5, share: 1e-2, floor: 0.1, reuse: false };
 
     /// Fall of a fit's cost that is not worth another linearisation.
     fn enough(&self, fit: &Fit) -> f64 {

@@ -66,7 +66,8 @@ pub fn judge(
         let built = plant.build(&set.effects())?;
         // What a wrong model is off by takes no more exact starts.
         let model = if is_last(known) { "corrected" } else { "nominal" };
-        let say = |what: &str, fit: &Fit| stage.work.watch.step(&format!("{model} model, {what}: error {:.3}", fit.rms()));
+        let say =
+            |what: &str, fit: &Fit| stage.work.watch.step(&format!("{model} model, {what}: error {:.3}", fit.rms()));
         let effort = if is_last(known) { Effort::JUDGED } else { Effort { iterations: GLANCES, ..Effort::JUDGED } };
         let mut windows = cut(&built, stage.tapes, Some(window), |_| true);
         begin_from(&mut windows, &known.segments);

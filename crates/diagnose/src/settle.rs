@@ -91,7 +91,7 @@ impl Stage<'_> {
         // A start that was at its best may be so still: then old derivatives promise nothing.
         let known = now.segment.columns.as_ref().filter(|k| k.freedoms == all && is_of(k, &r));
         if effort.share >= Effort::JUDGED.share && effort.iterations > 0 && !now.converged && known.is_some() {
-            self.descend(built, &mut now, &mut r, (&mut damping, effort.share));
+            self.descend(built, &mut now, &mut r, (&mut damping, effort));
         }
         while now.iterations < effort.iterations && !now.converged {
             let (coarse, base) = self.towards(built, &now.segment, &r);
@@ -102,7 +102,7 @@ impl Stage<'_> {
             now.iterations += 1;
             now.shown = columns.iter().filter(|c| c.norm_squared() > 0.0).count();
             now.segment.columns = Some(Arc::new(StartColumns { freedoms: all.clone(), columns }));
-            if !self.descend(built, &mut now, &mut r, (&mut damping, effort.share)) {
+            if !self.descend(built, &mut now, &mut r, (&mut damping, effort)) {
                 break;
             }
         }
@@ -116,13 +116,15 @@ impl Stage<'_> {
         built: &Built,
         now: &mut Settled,
         r: &mut DVector<f64>,
-        (damping, share): (&mut f64, f64),
+        (damping, effort): (&mut f64, Effort),
     ) -> bool {
         let Some(known) = now.segment.columns.clone() else { return false };
         let columns: Vec<&DVector<f64>> = known.columns.iter().collect();
         for is_fresh in std::iter::once(true).chain(std::iter::repeat(false)) {
             let linear = eliminate(&columns, &[r], &known.freedoms);
-            let enough = NEXT_TO_NOTHING.max(share * (now.cost - r.len() as f64).max(0.0));
+            let noise = r.len() as f64;
+            let enough = effort.share * (now.cost - noise).max(0.0);
+            let enough = NEXT_TO_NOTHING.max(enough).max(effort.floor * (2.0 * noise).sqrt());
             let promised = now.cost - linear.reduced[(0, 0)];
             if promised.is_nan() || promised < enough {
                 now.converged = true;

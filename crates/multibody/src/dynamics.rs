@@ -114,40 +114,36 @@ impl Dynamics {
             row[..n].fill(0.0);
         }
         if extra.is_empty() {
-            self.add_rigid(tree, kin, m, stride);
+            self.add_rigid(tree, kin, m, (stride, 6));
+            write_base_block(&SpatialMatrix::from(&self.locked[0]), m, stride);
         } else {
             self.add_stiffened(tree, kin, extra, m, stride);
         }
-        for joint in tree.joints.iter().filter(|j| j.armature != 0.0 && !j.is_mimic) {
-            for k in 6 + joint.v_index..6 + joint.v_index + joint.width {
-                m[k * stride + k] += joint.armature;
-            }
-        }
+        add_armatures(tree, m, (stride, 6));
     }
 
-    /// Composites are inertias: ten numbers each.
-    fn add_rigid(&mut self, tree: &Tree, kin: &Kinematics, m: &mut [f64], stride: usize) {
+    /// Mass matrix over the joint coordinates alone, of a vehicle whose base is held: row-major, added to the square of side `stride` ≥ nv that
+    /// begins at `m[0]`.
+    pub fn add_joint_mass_matrix(&mut self, tree: &Tree, kin: &Kinematics, m: &mut [f64], stride: usize) {
+        self.add_rigid(tree, kin, m, (stride, 0));
+        add_armatures(tree, m, (stride, 0));
+    }
+
+    /// Composites are inertias: ten numbers each. Joint coordinates begin at row `first`, behind the base's six or none.
+    fn add_rigid(&mut self, tree: &Tree, kin: &Kinematics, m: &mut [f64], at: (usize, usize)) {
         self.locked.copy_from_slice(&kin.inertia);
         for (j, joint) in tree.joints.iter().enumerate().rev() {
             let locked = self.locked[j + 1];
             for k in 0..joint.width {
                 self.force[k] = locked.momentum(&kin.screws[joint.column + k]);
             }
-            self.add_joint_rows(tree, kin, j, m, stride);
+            self.add_joint_rows(tree, kin, j, m, at);
             self.locked[tree.bodies[j + 1].parent] += locked;
         }
-        write_base_block(&SpatialMatrix::from(&self.locked[0]), m, stride);
     }
 
     /// What stiffness adds to them is any symmetric matrix.
-    fn add_stiffened(
-        &mut self,
-        tree: &Tree,
-        kin: &Kinematics,
-        extra: &[SpatialMatrix],
-        m: &mut [f64],
-        stride: usize,
-    ) {
+    fn add_stiffened(&mut self, tree: &Tree, kin: &Kinematics, extra: &[SpatialMatrix], m: &mut [f64], stride: usize) {
         for ((composite, inertia), extra) in self.composite.iter_mut().zip(&kin.inertia).zip(extra) {
             *composite = SpatialMatrix::from(inertia);
             *composite += *extra;
@@ -157,37 +153,52 @@ impl Dynamics {
             for k in 0..joint.width {
                 self.force[k] = composite.mul(&kin.screws[joint.column + k]);
             }
-            self.add_joint_rows(tree, kin, j, m, stride);
+            self.add_joint_rows(tree, kin, j, m, (stride, 6));
             self.composite[tree.bodies[j + 1].parent] += composite;
         }
         write_base_block(&self.composite[0], m, stride);
     }
 
     /// Rows and columns of a joint, whose unit gains take the wrenches `force` of all that hangs on it.
-    fn add_joint_rows(&mut self, tree: &Tree, kin: &Kinematics, j: usize, m: &mut [f64], stride: usize) {
+    fn add_joint_rows(
+        &mut self,
+        tree: &Tree,
+        kin: &Kinematics,
+        j: usize,
+        m: &mut [f64],
+        (stride, first): (usize, usize),
+    ) {
         let joint = &tree.joints[j];
         for k in 0..joint.width {
-            let (row, force) = (6 + joint.v_index + k, self.force[k]);
+            let (row, force) = (first + joint.v_index + k, self.force[k]);
             for l in 0..joint.width {
-                m[row * stride + 6 + joint.v_index + l] += kin.screws[joint.column + l].dot(&force);
+                m[row * stride + first + joint.v_index + l] += kin.screws[joint.column + l].dot(&force);
             }
             let mut at = tree.bodies[j + 1].parent;
             while at != 0 {
                 let above = &tree.joints[at - 1];
                 for l in 0..above.width {
-                    let (column, value) = (6 + above.v_index + l, kin.screws[above.column + l].dot(&force));
+                    let (column, value) = (first + above.v_index + l, kin.screws[above.column + l].dot(&force));
                     // A mimic joint below its leader meets its own coordinate: both halves land on the diagonal.
                     m[row * stride + column] += value;
                     m[column * stride + row] += value;
                 }
                 at = tree.bodies[at].parent;
             }
-            for l in 0..3 {
+            for l in 0..first / 2 {
                 for (column, value) in [(l, force.moment[l]), (3 + l, force.force[l])] {
                     m[row * stride + column] += value;
                     m[column * stride + row] += value;
                 }
             }
+        }
+    }
+}
+
+fn add_armatures(tree: &Tree, m: &mut [f64], (stride, first): (usize, usize)) {
+    for joint in tree.joints.iter().filter(|j| j.armature != 0.0 && !j.is_mimic) {
+        for k in first + joint.v_index..first + joint.v_index + joint.width {
+            m[k * stride + k] += joint.armature;
         }
     }
 }

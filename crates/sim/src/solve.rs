@@ -126,6 +126,18 @@ fn add_vehicle(model: &Model, ws: &mut Workspace, i: usize, (h, is_stiffened): (
     if vehicle.tree.nv == 0 && (vehicle.base.is_held() || ws.islands.leaves_rigid) {
         return;
     }
+    let slopes = &ws.coordinate_lines[vehicle.v0..vehicle.v0 + vehicle.tree.nv];
+    if vehicle.base.is_held() && !is_stiffened {
+        let islands = &mut ws.islands;
+        let group = islands.group[i];
+        let (stride, first) = (padded(islands.size[group]), islands.rows[i][6]);
+        let own = &mut islands.matrix[islands.start[group] + first * (stride + 1)..];
+        ws.dynamics[i].add_joint_mass_matrix(&vehicle.tree, &ws.kin[i], own, stride);
+        for (k, (_, slope)) in slopes.iter().enumerate() {
+            own[k * (stride + 1)] += h * slope;
+        }
+        return;
+    }
     let n = 6 + vehicle.tree.nv;
     let bodies = vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len();
     let extra = if is_stiffened { &ws.extra[bodies] } else { &[] };
@@ -139,7 +151,7 @@ fn add_vehicle(model: &Model, ws: &mut Workspace, i: usize, (h, is_stiffened): (
             target[column] = islands.scratch[k * n + l];
         }
         if k >= 6 {
-            target[row] += h * ws.coordinate_lines[vehicle.v0 + k - 6].1;
+            target[row] += h * slopes[k - 6].1;
         }
     }
 }
