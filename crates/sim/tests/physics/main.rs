@@ -27,6 +27,7 @@ mod mechanism_latches;
 mod mechanism_struts;
 mod momentum;
 mod orbit;
+mod resting;
 mod restitution;
 mod stiff;
 mod support;
