@@ -9,7 +9,10 @@ use crate::reading::Value;
 use crate::run::Findings;
 use crate::tape::Tape;
 use crate::tell::role;
+use multibody::JointKind;
 use record::{ChannelName, Role};
+use scenario::measure::Quantity;
+use sim::Model;
 
 /// Most channels drawn.
 const CHANNELS: usize = 6;
@@ -44,7 +47,7 @@ pub(crate) fn curves(findings: &Findings, stage: &Stage<'_>) -> Vec<Curve> {
         Curve {
             run: tape.file.clone(),
             role: role(tape.role),
-            unit: ChannelName::parse(&channel).map_or_else(String::new, |name| name.quantity.unit().to_owned()),
+            unit: unit_of_channel(&findings.nominal.built.model, reading.quantity, &channel).to_owned(),
             channel,
             sigma: reading.sigma,
             window_s: Some(findings.window),
@@ -55,6 +58,19 @@ pub(crate) fn curves(findings: &Findings, stage: &Stage<'_>) -> Vec<Curve> {
         }
     };
     channels.into_iter().take(CHANNELS).map(|(c, _)| curve(c)).collect()
+}
+
+/// Unit of a channel; of a joint's that of its kind, for the name of a channel does not tell whether it turns or slides.
+fn unit_of_channel(model: &Model, quantity: Quantity, channel: &str) -> &'static str {
+    let unit = ChannelName::parse(channel).map_or("", |name| name.quantity.unit());
+    let Some((turning, sliding)) = unit.split_once('|') else { return unit };
+    let (Quantity::JointPosition(v) | Quantity::JointVelocity(v)) = quantity else { return unit };
+    let mut joints =
+        model.vehicles.iter().flat_map(|vehicle| vehicle.tree.joints.iter().map(|j| (vehicle.v0 + j.v_index, j)));
+    match joints.find(|(at, joint)| *at == v && !joint.is_mimic) {
+        Some((_, joint)) if joint.kind == JointKind::Prismatic => sliding,
+        _ => turning,
+    }
 }
 
 /// What was measured; orientations have no curve.
