@@ -107,19 +107,13 @@ pub fn diagnose(
     let discretisation = suited(&stage, &standing, discretisation);
     stage.pace = discretisation.pace;
     let (thin, stage) = (stage, Stage { tapes: &tapes, ..stage });
-    let effects = standing.judge().set.clone();
-    let segments = if follows { standing.whole.segments } else { standing.windows.segments };
-    let afresh = |s: Segment| Segment { columns: None, steps: Steps::default(), weight: 1.0, ..s };
-    let segments = segments.into_iter().map(afresh).collect();
-    let mut found = fit_in_turns(&thin, &plant, effects, segments, FINAL)?;
-    if found.segments.iter().any(|s| stage.count(s) > thin.count(s)) {
-        let segments = found.segments.into_iter().map(|s| Segment { columns: None, ..s }).collect();
-        found = fit(&stage, &plant, found.set, segments, POLISH)?;
-    }
+    // What only concerns the nominal model bears its own steps.
+    let few = Stage { pace, ..thin };
+    let found = fit_to_all((&thin, &stage), &plant, standing)?;
     watch.step(&format!("error {:.3} of all samples", found.rms()));
     clock.stage("predict every run", 0.85);
-    let judgement = judge((&Stage { pace, ..thin }, &stage), &plant, ([&nominal, &whole], &found), (window, follows))?;
-    let left = left_by((&Stage { pace, ..thin }, &thin), &plant, (&nominal, &located), &judgement)?;
+    let judgement = judge((&few, &stage), &plant, ([&nominal, &whole], &found), (window, follows))?;
+    let left = left_by((&few, &thin), &plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
     let verdict = verdict(&judgement, &found, follows);
     // What explains nothing is not told, nor how sure its numbers are.
@@ -144,6 +138,19 @@ pub fn diagnose(
         discretisation,
     };
     Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
+}
+
+/// The last fit of what the search has found, to thinned samples first.
+fn fit_to_all((thin, all): (&Stage<'_>, &Stage<'_>), plant: &Plant, standing: Standing) -> Result<Fit, DiagnoseError> {
+    let effects = standing.judge().set.clone();
+    let segments = if standing.follows() { standing.whole.segments } else { standing.windows.segments };
+    let afresh = |s: Segment| Segment { columns: None, steps: Steps::default(), weight: 1.0, ..s };
+    let found = fit_in_turns(thin, plant, effects, segments.into_iter().map(afresh).collect(), FINAL)?;
+    if found.segments.iter().all(|s| all.count(s) <= thin.count(s)) {
+        return Ok(found);
+    }
+    let segments = found.segments.into_iter().map(|s| Segment { columns: None, ..s }).collect();
+    fit(all, plant, found.set, segments, POLISH)
 }
 
 /// Steps that suit the corrected model over what it is judged by: what was found may be faster than what the nominal model has.

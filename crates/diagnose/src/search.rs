@@ -381,11 +381,7 @@ fn refit_promising(
         // A promise is seldom exceeded: what promises less than another has brought already is left alone; where that one leaves something
         // too, promises are compared, which are rough.
         let is_open = ready.iter().all(|r| r.1.is_significant());
-        let rival = if is_open {
-            (RIVAL * brought_by(here, &ready)).min(EQUAL * most)
-        } else {
-            RIVAL * brought_by(here, &ready)
-        };
+        let rival = (RIVAL * brought_by(here, &ready)).min(if is_open { EQUAL * most } else { f64::INFINITY });
         let is_hopeless = score.score < rival && !h.has_valleys();
         if !picked.iter().any(|p| std::ptr::eq(*p, score)) || is_hopeless {
             continue;
