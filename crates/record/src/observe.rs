@@ -220,7 +220,7 @@ fn standard_channels(model: &Model, pairs: &[(Option<usize>, Option<usize>)]) ->
     for (quantity, text) in [("kinetic", ""), ("potential", ""), ("elastic", "stored in contacts")] {
         add(format!("energy.{quantity}"), "J", Plot::Energy, text);
     }
-    for quantity in ["actuator_work", "contact_work", "joint_loss"] {
+    for quantity in ["actuator_work", "contact_work", "contact_loss", "joint_loss"] {
         add(format!("energy.{quantity}"), "J", Plot::Energy, "sum since the start");
     }
     specs.extend(crate::mechanisms::channels(model));
@@ -272,7 +272,8 @@ fn write_accounts(world: &World, audit: Option<&MomentumAudit>, values: &mut Vec
     let (energy, account) = (Energy::of(world), world.state().account);
     values.extend(audit.map_or([f64::NAN; 2], |a| [a.linear_drift, a.angular_drift]));
     values.extend([energy.kinetic, energy.potential, energy.elastic]);
-    values.extend([account.actuator_work, account.contact_work, account.passive_joint_work]);
+    let actuators: f64 = world.works().actuators.iter().sum();
+    values.extend([actuators + account.pull_in_work, account.contact_work, account.contact_loss, account.joint_loss]);
 }
 
 fn write_poses(world: &World, links: usize, poses: &mut Vec<Pose>) {

@@ -11,6 +11,7 @@
 //! 1e5 N·m/rad (1e6 N/m). Dry
 //! friction is the bristle of [`friction`] in one dimension, with the deflection at breakaway of 3e-4 rad or m.
 
+use crate::books::Passage;
 use crate::effect::{Acting, EffectKind, Series};
 use crate::model::Model;
 use crate::state::State;
@@ -179,10 +180,6 @@ pub(crate) struct CoordinateForce {
     pub driven: f64,
     /// What of it arrives on the link side: the same, but for a gear that yields.
     pub through: f64,
-    /// What effects give, beside such a gear.
-    pub by_effects: f64,
-    /// Mean rate of a motor that is not the joint's own.
-    pub motor_rate: Option<f64>,
 }
 
 impl Coordinate {
@@ -200,6 +197,55 @@ impl Coordinate {
             ..Trial::default()
         };
         law.eval(&trial).s.x
+    }
+
+    /// What dry friction takes for good while its deflection goes from `start` to `end` under a displacement of `moved`, J: the
+    /// force of the bristle's end times what has slipped at its tip.
+    pub(crate) fn calc_dry_loss(&self, start: f64, end: f64, moved: f64) -> f64 {
+        self.dry.as_ref().map_or(0.0, |law| law.stiffness * end * (moved - (end - start)))
+    }
+
+    /// Power that damping and stops take for good, W.
+    fn calc_loss(&self, q: f64, v: f64) -> f64 {
+        let mut loss = self.damping * v * v;
+        if let Some([lower, upper]) = self.limits {
+            // Depth in the stop, and the rate at which it grows.
+            let (depth, rate) = if q < lower { (lower - q, -v) } else { (q - upper, v) };
+            if depth > 0.0 {
+                let (spring, brake) = (self.stop_stiffness * depth, self.stop_damping * rate);
+                loss += if brake > -spring { brake * rate } else { -spring * rate };
+            }
+        }
+        loss
+    }
+
+    /// Energy in its stop and in the bristle of its dry friction, J.
+    pub(crate) fn calc_energy(&self, q: f64, dry: f64) -> f64 {
+        let depth = self.limits.map_or(0.0, |[lower, upper]| (lower - q).max(q - upper).max(0.0));
+        let bristle = self.dry.as_ref().map_or(0.0, |law| law.stiffness);
+        0.5 * (self.stop_stiffness * depth * depth + bristle * dry * dry)
+    }
+
+    /// Adds the works of actuators and effects in a passage, J; what damping and stops take in it, J.
+    pub(crate) fn add_works(&self, passage: &Passage, acting: &Acting<'_>, works: &mut [f64]) -> f64 {
+        let Passage { q, rate, elapsed, gear, .. } = *passage;
+        let (motor, moved) = ((q + gear[0], rate + gear[1]), elapsed * (rate + gear[1]));
+        for &index in &self.actuators {
+            works[index] += deliver(index, &passage.point, motor, acting).0 * moved;
+        }
+        for &index in &self.effects {
+            if let EffectKind::Joint(effect) = &acting.model.effects.list[index].kind
+                && !effect.stores()
+            {
+                let at = (&passage.point, rate);
+                let (effort, _) = effect.eval(at, (q, rate), acting.memory(index), passage.time);
+                works[acting.model.work_of_effect(index)] += effort * elapsed * rate;
+            }
+        }
+        if let Some((index, series)) = self.series.and_then(|index| acting.model.series(index)) {
+            works[acting.model.work_of_effect(index)] -= elapsed * series.calc_loss(gear);
+        }
+        elapsed * self.calc_loss(q, rate)
     }
 
     /// The law of this coordinate at the rate `v_new`.
@@ -233,7 +279,6 @@ impl Coordinate {
             if let EffectKind::Joint(effect) = &acting.model.effects.list[index].kind {
                 let (effort, slope) = effect.eval((at, v_new), (q, v), acting.memory(index), acting.state.time);
                 out.effort += effort;
-                out.by_effects += effort;
                 out.slope += slope;
             }
         }
@@ -261,7 +306,7 @@ impl Coordinate {
         let motor = series.eval(at, v_new, (acting.memory(index), acting.step), drive);
         out.effort += motor.effort;
         out.slope += motor.slope;
-        (out.driven, out.through, out.motor_rate) = (motor.driven, motor.effort, Some(motor.rate));
+        (out.driven, out.through) = (motor.driven, motor.effort);
     }
 
     /// What all its actuators deliver with the motor at q and v, and −∂/∂v'.

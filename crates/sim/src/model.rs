@@ -188,9 +188,6 @@ pub struct ModelSpec {
     pub integrator: Integrator,
     /// Step, s.
     pub step: f64,
-    /// A force (N, W axes) that is added to B of every touching point and not to A: zero, but for the test which shows
-    /// that the momentum account sees an error of one microneutron.
-    pub one_sided_force: Vec3,
 }
 
 /// The immutable world.
@@ -230,7 +227,6 @@ pub struct Model {
     pub(crate) dead_weights: Vec<crate::dead_weight::DeadWeight>,
     /// Bounding radius of each body's colliders about its origin, m; negative where it has none.
     pub(crate) collider_radius: Vec<f64>,
-    pub(crate) one_sided_force: Vec3,
 }
 
 impl Model {
@@ -273,7 +269,6 @@ impl Model {
             mechanism_sides,
             dead_weights: Vec::new(),
             collider_radius,
-            one_sided_force: spec.one_sided_force,
         };
         model.attach_drives()?;
         model.effects = Effects::build(spec.effects, &mut model)?;
@@ -329,6 +324,16 @@ impl Model {
     /// Length of `v`.
     pub fn nv(&self) -> usize {
         self.vehicles.last().map_or(0, |v| v.v0 + v.tree.nv)
+    }
+
+    /// How many actuators, drives and effects have books of their own.
+    pub(crate) fn n_works(&self) -> usize {
+        self.actuators.len() + self.drives.len() + self.effects.list.len()
+    }
+
+    /// Where the books of an effect stand in [`crate::State::works`].
+    pub(crate) fn work_of_effect(&self, index: usize) -> usize {
+        self.actuators.len() + self.drives.len() + index
     }
 
     /// Index of a vehicle by name.

@@ -7,6 +7,7 @@
 //! have rates; what becomes of a bristle's is the business of [`crate::rk4_bristle`].
 
 use crate::actuator::CoordinatePoint;
+use crate::books;
 use crate::contacts::{Touch, Turned, find_memory, find_touches};
 use crate::drive;
 use crate::effect::{self, Acting};
@@ -45,6 +46,7 @@ struct Rates {
     /// Per bristle slot, in the plane and the axes of the step's start.
     s: Vec<Vec3>,
     effects: Vec<f64>,
+    works: Vec<f64>,
     account: Account,
 }
 
@@ -60,6 +62,7 @@ impl Rates {
         zero(&mut self.v, model.nv());
         zero(&mut self.s, slots);
         zero(&mut self.effects, model.effects.n_memory());
+        zero(&mut self.works, model.n_works());
         self.account = Account::default();
     }
 
@@ -73,6 +76,7 @@ impl Rates {
         add(&mut self.v, &other.v, k);
         add(&mut self.s, &other.s, k);
         add(&mut self.effects, &other.effects, k);
+        add(&mut self.works, &other.works, k);
         self.account.add_scaled(&other.account, k);
     }
 }
@@ -94,6 +98,9 @@ const STAGES: [(f64, f64); 4] = [(0.0, 1.0 / 6.0), (0.5, 1.0 / 3.0), (0.5, 1.0 /
 pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     let h = ws.step;
     begin(model, state, ws);
+    // A stage's works are rates: nothing gains within it.
+    ws.gain_share = 0.0;
+    let bristles = books::calc_bristle_energy(model, &state.bristles);
     let mut rk = std::mem::take(&mut ws.rk);
     rk.start.copy_from(state);
     for (index, (node, weight)) in STAGES.into_iter().enumerate() {
@@ -121,12 +128,15 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     place(model, state, &mut ws.displacement, &from, h);
     drive::place(model, state, ws.end);
     state.account.add_scaled(&rk.sum.account, h);
+    state.works.iter_mut().zip(&rk.sum.works).for_each(|(sum, rate)| *sum += rate * h);
     rk4_bristle::place_at_the_end(model, &rk.tracks, &mut state.bristles);
     ws.rk = rk;
     ws.update_positions(model, state);
     finish(model, state, ws);
     pivots::commit(ws);
     carry_to_the_end(model, state, ws);
+    // Stages have booked the whole work of friction as lost; what the bristles hold of it is not.
+    state.account.contact_loss -= books::calc_bristle_energy(model, &state.bristles) - bristles;
     mechanism::commit(model, state, ws);
 }
 
@@ -140,8 +150,8 @@ fn open_slots(model: &Model, ws: &Workspace, slots: &mut Vec<ContactMemory>) {
         }
         let compression = law.normal.calc_compression(touch.gap, touch.normal.dot(&touch.u));
         let s_w = law.friction.map_or(Vec3::zeros(), |f| f.eval_rate(&trial_of(touch, compression)).s);
-        let Touch { pair, feature, normal: normal_w, turn: turn_w, rest, local_b: point_b, .. } = *touch;
-        slots.push(ContactMemory { pair, feature, s_w, normal_w, turn_w, rest, point_b });
+        let Touch { pair, feature, normal: normal_w, turn: turn_w, rest, local_b: point_b, weight, .. } = *touch;
+        slots.push(ContactMemory { pair, feature, s_w, normal_w, turn_w, rest, point_b, weight });
     }
 }
 
@@ -223,14 +233,16 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     state.work.rate_evaluations += 1;
     ws.v_gain.fill(0.0);
     ws.dvel.fill(Twist::default());
-    let account = state.account;
+    let account = std::mem::take(&mut state.account);
+    std::mem::swap(&mut rk.rate.works, &mut state.works);
     rk.rate.momentum.copy_from_slice(&state.momentum);
     state.momentum.fill(Wrench::default());
-    state.account = Account::default();
     add_impulses(model, state, ws, 1.0);
+    books::add_coordinates(model, state, ws);
     std::mem::swap(&mut rk.rate.momentum, &mut state.momentum);
-    (rk.rate.account, state.account) = (state.account, account);
-    drive::add_rates(model, state, ws, (&rk.rate.momentum, &mut rk.rate.account), &rk.rate.v);
+    drive::add_rates(model, state, ws, &rk.rate.momentum, &rk.rate.v);
+    std::mem::swap(&mut rk.rate.works, &mut state.works);
+    rk.rate.account = std::mem::replace(&mut state.account, account);
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let (q, v) = (vehicle.q_range(), vehicle.v_range());
         let twist = ws.kin[i].vel[0];

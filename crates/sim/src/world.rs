@@ -8,7 +8,7 @@ use crate::model::{Integrator, Model};
 use crate::state::{ContactMemory, State};
 use crate::step::{self, Scheme};
 use crate::workspace::{Workspace, calc_world_momentum};
-use crate::{Command, rk4};
+use crate::{Command, Works, rk4};
 use friction::Friction;
 use multibody::Kinematics;
 use spatial::{Frame, Twist, Vec3, Wrench};
@@ -115,6 +115,7 @@ impl World {
     pub fn refresh(&mut self) {
         if !self.is_fresh {
             let now = self.state.time;
+            self.state.works.resize(self.model.n_works(), 0.0);
             drive::place(&self.model, &mut self.state, now);
             self.ws.update_positions(&self.model, &self.state);
             self.ws.update_velocities(&self.model, &self.state);
@@ -359,6 +360,13 @@ impl World {
         self.ws.kin[vehicle].link_twist(&self.model.vehicles[vehicle].tree, link)
     }
 
+    /// Work since the start of every actuator, drive and effect, J.
+    pub fn works(&self) -> Works<'_> {
+        let (actuators, rest) = self.state.works.split_at(self.model.actuators.len());
+        let (drives, effects) = rest.split_at(self.model.drives.len());
+        Works { actuators, drives, effects }
+    }
+
     /// Effort that acted on a coordinate in the last step, N·m or N (actuators and passive laws).
     pub fn effort(&self, coordinate: usize) -> f64 {
         self.ws.coordinate_forces[coordinate].effort
@@ -423,6 +431,7 @@ impl World {
                 turn_w: Vec3::zeros(),
                 rest,
                 point_b: touch.local_b,
+                weight: touch.weight,
             });
         }
         self.state.bristles.sort_by_key(|m| (m.pair, m.feature));

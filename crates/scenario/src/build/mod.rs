@@ -97,7 +97,6 @@ pub fn build_from(scenario: &Scenario, stock: &Stock) -> Result<Mission, Scenari
         environment: parts.environment,
         integrator: integrator(scenario.integrator.kind),
         step: scenario.integrator.step_s,
-        one_sided_force: Vec3::zeros(),
     };
     let model = match Model::build_like(stock.scene(), spec) {
         Ok(model) => drives::attach(scenario, model, &mut faults),

@@ -5,6 +5,7 @@ use super::capture::CaptureWatch;
 use super::contacts::ContactWatch;
 use super::creep::CreepGauge;
 use super::docking::DockingWatch;
+use super::energy::EnergyWatch;
 use super::keep_out::KeepOutWatch;
 use super::mechanisms::MechanismWatch;
 use super::{Metric, Outcome};
@@ -12,7 +13,7 @@ use crate::build::Mission;
 use crate::spec::{Scenario, Strategy};
 use record::{Event, EventKind};
 use serde_json::Value;
-use sim::{Energy, Flow, MomentumAudit, Observer, StepError, World};
+use sim::{Flow, MomentumAudit, Observer, StepError, World};
 
 /// Steps between two entries of the momentum audit.
 const AUDIT_EVERY: u64 = 100;
@@ -28,7 +29,7 @@ pub struct Judge {
     creep: CreepGauge,
     mechanisms: MechanismWatch,
     audit: Option<MomentumAudit>,
-    energy_start: Energy,
+    energy: EnergyWatch,
     events: Vec<Event>,
 }
 
@@ -50,7 +51,7 @@ impl Judge {
             creep: CreepGauge::new(mission.steps, world.model().step),
             mechanisms: MechanismWatch::new(world),
             audit: MomentumAudit::applies(world).then(|| MomentumAudit::new(world)),
-            energy_start: Energy::of(world),
+            energy: EnergyWatch::new(world),
             events: Vec::new(),
         }
     }
@@ -80,8 +81,9 @@ impl Judge {
             (Ok(()), None, Some(docking)) => docking.conclude(world, self.contacts.last_contact),
             (Ok(()), None, None) => ("completed", "the run came to its end".to_owned()),
         };
-        let metrics = self.calc_metrics(world, outcome);
-        Outcome { outcome, reason, metrics, events: self.events }
+        let mut metrics = self.calc_metrics(world, outcome);
+        let warnings = self.energy.add_metrics(world, &mut metrics).into_iter().collect();
+        Outcome { outcome, reason, metrics, events: self.events, warnings }
     }
 
     fn calc_metrics(&self, world: &World, outcome: &str) -> Vec<Metric> {
@@ -135,11 +137,11 @@ impl Judge {
         }
         self.contacts.add_metrics(world.model(), &mut metrics);
         self.mechanisms.add_metrics(world, &mut metrics);
-        self.add_accounts(world, &mut metrics);
+        self.add_momentum_drift(&mut metrics);
         metrics
     }
 
-    fn add_accounts(&self, world: &World, metrics: &mut Vec<Metric>) {
+    fn add_momentum_drift(&self, metrics: &mut Vec<Metric>) {
         let mut add = |name: &'static str, value: f64, meaning| {
             metrics.push(Metric { name: name.into(), value: value.into(), meaning });
         };
@@ -149,22 +151,12 @@ impl Judge {
                 audit.linear_drift,
                 "drift of linear momentum over the largest Σ m‖v‖, from the links",
             );
-            add("momentum_drift_angular", audit.angular_drift, "drift of angular momentum over the largest Σ ‖L_link‖");
+            add(
+                "momentum_drift_angular",
+                audit.angular_drift,
+                "drift of angular momentum over the largest Σ (lever × m‖v‖ + spin)",
+            );
         }
-        let (now, account) = (Energy::of(world), world.state().account);
-        let change = now.kinetic - self.energy_start.kinetic + now.potential - self.energy_start.potential;
-        let external = if world.model().environment.is_still() { account.external_work } else { 0.0 };
-        let work = account.actuator_work
-            + account.passive_joint_work
-            + account.contact_work
-            + account.mechanism_work
-            + account.effect_work
-            + external;
-        add("kinetic_energy_j", now.kinetic, "at the end");
-        add("actuator_work_j", account.actuator_work, "work of the joint actuators");
-        add("contact_work_j", account.contact_work, "work of contact forces: negative, stored or dissipated");
-        add("joint_loss_j", account.passive_joint_work, "work of joint damping, friction and stops");
-        add("integrator_energy_j", change - work, "change of energy that no force explains: the integrator's own");
     }
 }
 

@@ -5,6 +5,7 @@ mod capture;
 mod contacts;
 mod creep;
 mod docking;
+mod energy;
 mod expect;
 mod judge;
 mod keep_out;
@@ -40,6 +41,8 @@ pub struct Outcome {
     pub metrics: Vec<Metric>,
     /// Events in order of time.
     pub events: Vec<Event>,
+    /// What a reader of the figures must know, in sentences with a way out.
+    pub warnings: Vec<String>,
 }
 
 impl Outcome {

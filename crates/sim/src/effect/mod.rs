@@ -38,7 +38,7 @@ use crate::state::State;
 use crate::step::{Scheme, calc_bias, calc_external};
 use crate::workspace::Workspace;
 use multibody::Kinematics;
-use spatial::{Vec3, Wrench};
+use spatial::{Twist, Vec3, Wrench};
 use std::ops::Range;
 
 /// Physics beyond the nominal model.
@@ -182,6 +182,21 @@ pub(crate) fn add_wrenches(model: &Model, state: &State, ws: &mut Workspace) {
         }
     }
     body::eval(model, state, ws);
+}
+
+/// Works of the effects on bodies, with the twists that displace these.
+pub(crate) fn add_works(model: &Model, state: &mut State, ws: &Workspace, twist_of: impl Fn(usize) -> Twist, h: f64) {
+    for (index, effect) in model.effects.list.iter().enumerate() {
+        if let EffectKind::Tilt(tilt) = &effect.kind {
+            let power = |(body, &(vehicle, local)): (usize, &(usize, usize))| {
+                let inertia = &ws.kin[vehicle].inertia[local];
+                twist_of(body).dot(&Wrench::new(inertia.mc.cross(tilt), inertia.mass * tilt))
+            };
+            let power: f64 = model.owners.iter().enumerate().map(power).sum();
+            state.works[model.work_of_effect(index)] += h * power;
+        }
+    }
+    body::add_works(model, state, ws, twist_of, h);
 }
 
 /// Whether forces on bodies must be evaluated again once the mean velocities of a step are known.

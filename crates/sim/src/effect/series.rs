@@ -37,9 +37,7 @@ pub(crate) struct Motor {
     pub slope: f64,
     /// Effort of the actuators on the rotor.
     pub driven: f64,
-    /// Mean rate of the rotor over the step; at an explicit stage its rate there.
-    pub rate: f64,
-    /// Its rate at the end of a one-solve step.
+    /// Rate of the rotor at the end of a one-solve step.
     rate_end: f64,
 }
 
@@ -79,7 +77,7 @@ impl Series {
             let (driven, _) = drive(at, at.q_base + x_start, omega);
             let (effort, _) = self.eval_law(x_start, w_start);
             let rate_end = omega + step * (driven - effort) / self.rotor;
-            return Motor { effort, slope: 0.0, driven, rate: omega, rate_end };
+            return Motor { effort, slope: 0.0, driven, rate_end };
         }
         let carried = if at.theta == 1.0 { 0.0 } else { at.beta * omega };
         let x_base = x_start + carried - at.moved_base - at.beta * v_new;
@@ -104,7 +102,7 @@ impl Series {
         }
         let held = self.rotor + step * by_drive;
         let slope = spring * held / (held + step * spring);
-        Motor { effort, slope, driven, rate: 0.5 * (omega + rate_end), rate_end }
+        Motor { effort, slope, driven, rate_end }
     }
 
     pub(super) fn write_rates(&self, memory: &[f64], force: &CoordinateForce, v_dot: f64, rates: &mut [f64]) {
@@ -132,6 +130,12 @@ impl Series {
     /// Deflection that carries a load at rest, rad or m.
     pub(super) fn calc_rest(&self, load: f64) -> f64 {
         if load == 0.0 { 0.0 } else { load / self.stiffness + (0.5 * self.gap).copysign(load) }
+    }
+
+    /// Power that its damper takes at a deflection and its rate, W.
+    pub(crate) fn calc_loss(&self, [x, rate]: [f64; 2]) -> f64 {
+        let is_engaged = x.abs() > 0.5 * self.gap || self.gap == 0.0;
+        if is_engaged { self.damping * rate * rate } else { 0.0 }
     }
 
     /// In the spring and in the rotor, J.

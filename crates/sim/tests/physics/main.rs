@@ -17,6 +17,7 @@ mod effect_books;
 mod effect_gears;
 mod effect_joints;
 mod effect_lines;
+mod energy_books;
 mod free_motion;
 mod friction;
 mod guided;

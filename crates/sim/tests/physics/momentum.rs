@@ -2,10 +2,10 @@
 //!
 //! The account is the sum over links ([`sim::MomentumAudit`]), never a conserved state.
 
-use crate::support::scenes::{box_hits_plate, driven_arm, gripper, gripper_spec, pad_gripper, shower, start_gripper};
+use crate::support::scenes::{box_hits_plate, driven_arm, gripper, pad_gripper, shower};
 use crate::support::{ALL, Setup, arm7, block, free_world, run, spec, twist, world};
-use sim::{Actuator, ActuatorKind, Base, Command, Energy, Environment, MomentumAudit, World};
-use spatial::Vec3;
+use sim::{Actuator, ActuatorKind, Base, Command, Energy, EnergyAudit, Environment, Integrator, MomentumAudit, World};
+use spatial::{Vec3, Wrench};
 
 /// What the issue asks for; rounding stays some four decades below it.
 const DRIFT: f64 = 1e-9;
@@ -103,17 +103,21 @@ fn bodies_of_every_shape_keep_momentum_in_their_impacts() {
 }
 
 #[test]
-fn one_sided_force_of_a_micronewton_shows_in_the_audit() {
+fn a_micronewton_from_nowhere_shows_in_the_audit() {
     for integrator in ALL {
-        let mut spec = gripper_spec(&Setup::new(integrator));
-        spec.one_sided_force = Vec3::new(0.0, 1e-6, 0.0);
-        let mut world = world(spec);
-        start_gripper(&mut world);
+        let mut world = gripper(&Setup::new(integrator));
         run(&mut world, 1_000);
-        let audit = audit(&mut world, 1_000, 10, idle);
+        let mut audit = MomentumAudit::new(&world);
+        for _ in 0..1_000 {
+            // As if B of one touching point felt more than A: 1 µN for 1 ms, at the point.
+            let point = world.touches().next().map_or(Vec3::zeros(), |touch| touch.point_w);
+            let impulse = Vec3::new(0.0, 1e-9, 0.0);
+            world.state_mut().momentum[1] += Wrench::new(point.cross(&impulse), impulse);
+            run(&mut world, 1);
+            audit.update(&world);
+        }
         println!("{integrator:?}: linear {:.1e}, angular {:.1e}", audit.linear_drift, audit.angular_drift);
-        // Eight points, 1 s.
-        assert!((audit.absolute[0] / 8e-6 - 1.0).abs() < 1e-6, "{:e}", audit.absolute[0]);
+        assert!((audit.absolute[0] / 1e-6 - 1.0).abs() < 1e-6, "{:e}", audit.absolute[0]);
         assert!(audit.linear_drift > DRIFT && audit.angular_drift > DRIFT);
     }
 }
@@ -148,11 +152,21 @@ fn thruster_through_the_centre_of_mass_gives_force_times_time_and_its_energy() {
         let mut spec = spec(vec![(block(4.0, Vec3::new(0.1, 0.2, 0.3)), Base::Free)], &Setup::new(integrator));
         spec.actuators = vec![jet(Vec3::zeros(), Vec3::y())];
         let mut world = world(spec);
+        let books = EnergyAudit::new(&world);
         audit(&mut world, 5_000, 10, burn);
         let speed = world.kinematics(0).vel[0].lin.y;
         assert!((speed - (3.0 * 2.0 + 5.0 * 3.0) / 4.0).abs() < 1e-12, "{integrator:?}: {speed}");
-        let (kinetic, work) = (Energy::of(&world).kinetic, world.state().account.external_work);
-        assert!((work / kinetic - 1.0).abs() < 1e-12, "{integrator:?}: work {work} J, kinetic energy {kinetic} J");
+        // Work is force times displacement, which is half a step ahead for the Euler schemes: ½ m Δv² a step.
+        let balance = books.close(&world);
+        let (kinetic, work, loss) = (Energy::of(&world).kinetic, balance.actuator_work, balance.numerical_loss);
+        let expected = match integrator {
+            Integrator::ImplicitEuler | Integrator::SemiImplicitEuler => {
+                0.5 * (2.0 * 3.0_f64.powi(2) + 3.0 * 5.0_f64.powi(2)) / 4.0 * 1e-3
+            }
+            Integrator::ImplicitMidpoint | Integrator::RungeKutta4 => 0.0,
+        };
+        assert!((work - kinetic - expected).abs() < 1e-11, "{integrator:?}: work {work} J, kinetic energy {kinetic} J");
+        assert!((loss - expected).abs() < 1e-11, "{integrator:?}: {loss} J");
     }
 }
 
