@@ -5,6 +5,7 @@
 //! | [`scenario_file`] | the scenario file, section by section, as one complete example |
 //! | [`robots`] | URDF: what is read, what is assumed, meshes, docking shapes |
 //! | [`contact`](mod@contact) | contact and friction laws with their equations and sources |
+//! | [`effects`] | physics beyond the nominal model: which there are, where they act, their parameters |
 //! | [`energy`] | what is stored, lost and worked, and what the integration itself lost |
 //! | [`diagnosis`] | from a rig's recording to a report and a corrected scenario |
 //! | [`architecture`] | crates and layers, one step, determinism, where to add what |
@@ -23,6 +24,9 @@ pub mod contact {}
 
 #[doc = include_str!("diagnosis.md")]
 pub mod diagnosis {}
+
+#[doc = include_str!("effects.md")]
+pub mod effects {}
 
 #[doc = include_str!("energy.md")]
 pub mod energy {}
