@@ -101,7 +101,10 @@ fn the_top_level_is_bare() {
 #[test]
 fn the_readme_is_short() {
     let lines = fs::read_to_string(root().join("README.md")).unwrap().lines().count();
-    assert!(lines <= LONGEST_README, "README.md has {lines} lines; tables belong to tests/tables, how-tos to the guide");
+    assert!(
+        lines <= LONGEST_README,
+        "README.md has {lines} lines; tables belong to tests/tables, how-tos to the guide"
+    );
 }
 
 /// The README, the tables of results and the guide.
