@@ -11,7 +11,7 @@
 
 use crate::{ChannelSpec, ContactSample, Log, Meta, Plot, RecordError, Sample};
 use multibody::JointKind;
-use sim::{ActuatorKind, Energy, Flow, Model, MomentumAudit, Observer, World};
+use sim::{ActuatorKind, Energy, EnergyAudit, EnergyBalance, Flow, Model, MomentumAudit, Observer, World};
 use spatial::{Pose, Vec3};
 
 /// A further channel: a function of the world.
@@ -44,6 +44,7 @@ pub struct Recorder<'a> {
     keep: Vec<bool>,
     every: u64,
     audit: Option<MomentumAudit>,
+    energy: EnergyAudit,
     vehicle_pairs: Vec<(Option<usize>, Option<usize>)>,
     live: Option<&'a mut dyn SampleSink>,
     scratch: Scratch,
@@ -113,6 +114,7 @@ impl<'a> Recorder<'a> {
             keep,
             every: plan.every.max(1),
             audit: MomentumAudit::applies(world).then(|| MomentumAudit::new(world)),
+            energy: EnergyAudit::new(world),
             vehicle_pairs,
             live,
             scratch: Scratch { poses: Vec::with_capacity(plan.links.iter().sum()), ..Scratch::default() },
@@ -128,7 +130,7 @@ impl<'a> Recorder<'a> {
         write_bodies(world, &mut values);
         write_joints(world, &mut values);
         write_contacts(world, &self.vehicle_pairs, &mut values);
-        write_accounts(world, self.audit.as_ref(), &mut values);
+        write_accounts(world, self.audit.as_ref(), &self.energy.close(world), &mut values);
         crate::mechanisms::write(world, &mut values);
         values.extend(self.probes.iter().map(|p| (p.read)(world)));
         let Scratch { kept, poses, contacts, .. } = &mut self.scratch;
@@ -220,7 +222,7 @@ fn standard_channels(model: &Model, pairs: &[(Option<usize>, Option<usize>)]) ->
     for (quantity, text) in [("kinetic", ""), ("potential", ""), ("elastic", "stored in contacts")] {
         add(format!("energy.{quantity}"), "J", Plot::Energy, text);
     }
-    for quantity in ["actuator_work", "contact_work", "contact_loss", "joint_loss"] {
+    for quantity in ["actuator_work", "contact_work", "contact_loss", "joint_loss", "numerical_loss"] {
         add(format!("energy.{quantity}"), "J", Plot::Energy, "sum since the start");
     }
     specs.extend(crate::mechanisms::channels(model));
@@ -268,12 +270,12 @@ fn write_contacts(world: &World, pairs: &[(Option<usize>, Option<usize>)], value
     }
 }
 
-fn write_accounts(world: &World, audit: Option<&MomentumAudit>, values: &mut Vec<f64>) {
-    let (energy, account) = (Energy::of(world), world.state().account);
+fn write_accounts(world: &World, audit: Option<&MomentumAudit>, balance: &EnergyBalance, values: &mut Vec<f64>) {
+    let (energy, contact_work) = (Energy::of(world), world.state().account.contact_work);
     values.extend(audit.map_or([f64::NAN; 2], |a| [a.linear_drift, a.angular_drift]));
     values.extend([energy.kinetic, energy.potential, energy.elastic]);
-    let actuators: f64 = world.works().actuators.iter().sum();
-    values.extend([actuators + account.pull_in_work, account.contact_work, account.contact_loss, account.joint_loss]);
+    let EnergyBalance { actuator_work, contact_loss, joint_loss, numerical_loss, .. } = *balance;
+    values.extend([actuator_work, contact_work, contact_loss, joint_loss, numerical_loss]);
 }
 
 fn write_poses(world: &World, links: usize, poses: &mut Vec<Pose>) {

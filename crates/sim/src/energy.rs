@@ -76,8 +76,10 @@ pub struct Works<'a> {
 }
 
 /// Follows a run's energy from its start.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct EnergyAudit {
+    /// Where contacts are found at the states that are looked at, so that the world itself is left alone.
+    probe: World,
     stored: f64,
     account: Account,
     works: [f64; 3],
@@ -111,16 +113,19 @@ pub struct EnergyBalance {
 impl EnergyAudit {
     /// Opens the books at the world's present state.
     pub fn new(world: &World) -> Self {
-        Self { stored: calc_stored(world), account: world.state().account, works: sum_works(world) }
+        let mut probe = World::new(Arc::clone(world.model()), world.state().clone());
+        let stored = calc_stored(world, &mut probe);
+        Self { probe, stored, account: world.state().account, works: sum_works(world) }
     }
 
     /// The balance up to the world's present state.
-    pub fn close(&self, world: &World) -> EnergyBalance {
+    pub fn close(&mut self, world: &World) -> EnergyBalance {
+        let stored = calc_stored(world, &mut self.probe);
         let (account, start) = (&world.state().account, &self.account);
         let now = sum_works(world);
         let [actuators, drive_work, effect_work] = [0, 1, 2].map(|k| now[k] - self.works[k]);
         let mut balance = EnergyBalance {
-            stored_change: calc_stored(world) - self.stored,
+            stored_change: stored - self.stored,
             actuator_work: actuators + account.pull_in_work - start.pull_in_work,
             drive_work,
             environment_work: account.environment_work - start.environment_work,
@@ -153,18 +158,18 @@ fn sum_works(world: &World) -> [f64; 3] {
     [works.actuators, works.drives, works.effects].map(|of| of.iter().sum())
 }
 
-/// All that is stored at the world's present state, J; contacts are found anew there, in a copy, and nothing changes.
-fn calc_stored(world: &World) -> f64 {
+/// All that is stored at the world's present state, J; contacts are found anew there.
+fn calc_stored(world: &World, probe: &mut World) -> f64 {
     let energy = Energy::of(world);
-    energy.kinetic + calc_contact_energy(world) + energy.joint + energy.mechanism + energy.effect
+    energy.kinetic + calc_contact_energy(world, probe) + energy.joint + energy.mechanism + energy.effect
 }
 
-fn calc_contact_energy(world: &World) -> f64 {
+fn calc_contact_energy(world: &World, probe: &mut World) -> f64 {
     let model = world.model();
     if model.scene.pairs().is_empty() {
         return 0.0;
     }
-    let mut probe = World::new(Arc::clone(model), world.state().clone());
+    probe.state_mut().copy_from(world.state());
     probe.refresh_touches();
     let normal = |t: TouchReport| t.weight * model.laws[t.pair].normal.calc_stored_energy(t.gap);
     probe.touches().map(normal).sum::<f64>() + calc_bristle_energy(model, &world.state().bristles)

@@ -16,7 +16,7 @@ const WORTH_A_WARNING: f64 = 0.05;
 const ROUND_OFF: f64 = 1e-9;
 
 /// The energy of a run from its start.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct EnergyWatch(EnergyAudit);
 
 impl EnergyWatch {
@@ -25,7 +25,7 @@ impl EnergyWatch {
     }
 
     /// Adds the figures; a warning, if there is one.
-    pub(super) fn add_metrics(&self, world: &World, metrics: &mut Vec<Metric>) -> Option<String> {
+    pub(super) fn add_metrics(&mut self, world: &World, metrics: &mut Vec<Metric>) -> Option<String> {
         let balance = self.0.close(world);
         let kinetic = sim::Energy::of(world).kinetic;
         let mut add = |name: Cow<'static, str>, value: f64, meaning| {

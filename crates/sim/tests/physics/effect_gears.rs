@@ -91,7 +91,7 @@ fn gear_keeps_its_books() {
         for integrator in ALL {
             let mut world = wheel_world(&[gear(7_000.0, damping, gap)], &Setup::new(integrator).step(1e-4));
             world.settle_effects();
-            let (start, audit) = (sum(&world), EnergyAudit::new(&world));
+            let (start, mut audit) = (sum(&world), EnergyAudit::new(&world));
             let mut highest = start;
             for k in 0..20 {
                 world.commands_mut()[0].effort = if k % 4 < 2 { 2.0 } else { -2.0 };

@@ -4,6 +4,7 @@
 //! the finest Runge–Kutta step leaves less than a few ten-thousandths of what each element handles.
 
 mod elements;
+mod planted;
 
 use crate::support::scenes::bouncing_ball;
 use crate::support::{ALL, Setup, linear, run, shape, spec, twist, world};
@@ -16,7 +17,7 @@ use spatial::Pose;
 fn balance(element: &Element, integrator: Integrator, h: f64) -> (EnergyBalance, f64) {
     let mut world = (element.build)(&Setup::new(integrator).step(h));
     world.settle_effects();
-    let audit = EnergyAudit::new(&world);
+    let mut audit = EnergyAudit::new(&world);
     for _ in 0..(element.duration / h).round() as u32 {
         let t = world.state().time + 0.5 * h;
         (element.command)(t, world.commands_mut());
@@ -113,7 +114,7 @@ fn undamped_bounce_names_what_the_step_took() {
     for integrator in ALL {
         for h in [1e-3, 1e-4] {
             let mut world = meeting_balls(&Setup::new(integrator).step(h));
-            let (audit, before) = (EnergyAudit::new(&world), Energy::of(&world).kinetic);
+            let (mut audit, before) = (EnergyAudit::new(&world), Energy::of(&world).kinetic);
             run(&mut world, (0.02 / h).round() as usize);
             let (balance, lost) = (audit.close(&world), before - Energy::of(&world).kinetic);
             println!("{integrator:?} at {h} s: lost {lost:.4} J of 0.0625 J, named {:.4} J", balance.numerical_loss);
@@ -133,7 +134,7 @@ fn undamped_bounce_names_what_the_step_took() {
 fn work_of_a_uniform_field_is_its_potential() {
     for integrator in ALL {
         let mut world = bouncing_ball(linear(1e4, 5.0), 0.05, &Setup::new(integrator));
-        let (audit, high) = (EnergyAudit::new(&world), world.state().bases[0].translation.vector.z);
+        let (mut audit, high) = (EnergyAudit::new(&world), world.state().bases[0].translation.vector.z);
         run(&mut world, 700);
         let fallen = 9.81 * (high - world.state().bases[0].translation.vector.z);
         let work = audit.close(&world).environment_work;
@@ -153,7 +154,7 @@ fn thrust_and_drag_in_gravity_and_orbit_lose_less_than_a_hundredth_of_the_thrust
     for integrator in ALL {
         for environment in fields {
             let mut world = elements::climbing(&Setup { environment, ..Setup::new(integrator) });
-            let audit = EnergyAudit::new(&world);
+            let mut audit = EnergyAudit::new(&world);
             for _ in 0..10 {
                 run(&mut world, 1_000);
                 let balance = audit.close(&world);
@@ -169,7 +170,7 @@ fn thrust_and_drag_in_gravity_and_orbit_lose_less_than_a_hundredth_of_the_thrust
 fn a_world_at_rest_has_an_empty_account() {
     for integrator in ALL {
         let mut world = bouncing_ball(linear(1e4, 5.0), -9.81e-4, &Setup::new(integrator));
-        let audit = EnergyAudit::new(&world);
+        let mut audit = EnergyAudit::new(&world);
         run(&mut world, 500);
         let b = audit.close(&world);
         assert!(size(&b) < 1e-15 && b.numerical_loss.abs() < 1e-15, "{integrator:?}: {b:?}");

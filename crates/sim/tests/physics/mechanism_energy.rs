@@ -77,7 +77,7 @@ fn stops_and_one_sided_struts_close_their_energy_to_their_kinks() {
 fn what_an_implicit_step_takes_is_its_numerical_loss() {
     for integrator in ALL {
         let mut world = struck_ring(smooth(), &Setup::new(integrator));
-        let (audit, total) = (EnergyAudit::new(&world), calc_total(&world));
+        let (mut audit, total) = (EnergyAudit::new(&world), calc_total(&world));
         run(&mut world, 2_000);
         let damped = total - calc_total(&world);
         println!("{integrator:?}: damped by the integrator {damped:.1e} J of {total:.2} J");

@@ -152,7 +152,7 @@ fn thruster_through_the_centre_of_mass_gives_force_times_time_and_its_energy() {
         let mut spec = spec(vec![(block(4.0, Vec3::new(0.1, 0.2, 0.3)), Base::Free)], &Setup::new(integrator));
         spec.actuators = vec![jet(Vec3::zeros(), Vec3::y())];
         let mut world = world(spec);
-        let books = EnergyAudit::new(&world);
+        let mut books = EnergyAudit::new(&world);
         audit(&mut world, 5_000, 10, burn);
         let speed = world.kinematics(0).vel[0].lin.y;
         assert!((speed - (3.0 * 2.0 + 5.0 * 3.0) / 4.0).abs() < 1e-12, "{integrator:?}: {speed}");

@@ -1,5 +1,6 @@
 //! One scene for every element that makes a force: small, and with most of its energy through that element.
 
+use super::planted::Force;
 use crate::support::effects::{on_joint, wheel_spec};
 use crate::support::mechanisms::{at, ground, mechanism, on, struck_ring, two_blocks};
 use crate::support::scenes::{box_hits_plate, driven_arm, flying_ball, gripper, sliding_block};
@@ -28,6 +29,8 @@ pub(super) struct Element {
     pub step: f64,
     /// Whether its laws have no corner on the way.
     pub is_smooth: bool,
+    /// Where its force is read.
+    pub force: Force,
 }
 
 fn idle(_: f64, _: &mut [Command]) {}
@@ -46,67 +49,83 @@ fn one(_: f64, commands: &mut [Command]) {
 
 /// Every element, with steps that resolve its springs.
 pub(super) fn all() -> Vec<Element> {
-    let smooth = |name, build, duration, step| Element { name, build, command: idle, duration, step, is_smooth: true };
-    let cornered = |name, build, duration, step| Element { is_smooth: false, ..smooth(name, build, duration, step) };
+    let mut all = joints();
+    all.extend(bodies());
+    all.extend(contacts());
+    all.extend(mechanisms());
+    all
+}
+
+fn smooth(name: &'static str, force: Force, build: fn(&Setup) -> World, [duration, step]: [f64; 2]) -> Element {
+    Element { name, build, command: idle, duration, step, is_smooth: true, force }
+}
+
+fn cornered(name: &'static str, force: Force, build: fn(&Setup) -> World, times: [f64; 2]) -> Element {
+    Element { is_smooth: false, ..smooth(name, force, build, times) }
+}
+
+fn swung(element: Element) -> Element {
+    Element { command: swing, ..element }
+}
+
+fn contacts() -> Vec<Element> {
+    let of = |name, build| cornered(name, Force::Contact, build, [0.1, 2e-4]);
+    let longer = |name, build| Element { duration: 0.3, ..of(name, build) };
     vec![
-        smooth("free arm", |s| moving_arm(s), 1.0, 1e-3),
-        Element { command: swing, ..smooth("joint drives", driven_arm, 0.5, 2e-4) },
-        Element { command: swing, ..smooth("joint damping", |s| wheel_of(&[], |j| j.damping = 0.4, s), 1.0, 1e-3) },
-        Element { command: swing, ..cornered("joint friction", |s| wheel_of(&[], |j| j.friction = 0.3, s), 1.0, 1e-3) },
-        Element {
-            command: swing,
-            ..cornered("joint stops", |s| wheel_of(&[], |j| j.position_limits = Some([-0.1, 0.12]), s), 0.5, 4e-5)
-        },
-        Element { command: one, ..smooth("thrust and drag", thrust_and_drag, 2.0, 1e-3) },
-        smooth("gravity gradient", falling_arm, 1.0, 1e-3),
-        cornered("normal spring and damper", |s| flying_ball(linear(1e4, 30.0), 3e-3, -0.5, s), 0.1, 2e-4),
-        cornered("Hunt-Crossley", |s| flying_ball(hunt_crossley(2e5, 1.5, 0.6), 3e-3, -0.5, s), 0.1, 2e-4),
-        cornered("undamped spring", |s| flying_ball(linear(1e4, 0.0), 3e-3, -0.5, s), 0.1, 2e-4),
-        cornered("bristle", |s| sliding(bristle(0.4, 2e4, 30.0), s), 0.2, 2e-4),
-        cornered("bristle with levels", |s| sliding(levels(), s), 0.2, 2e-4),
-        cornered("spin resistance", spinning_ball, 0.4, 2e-4),
-        cornered("bed", sliding_disc, 0.1, 2e-4),
-        cornered("box on a plate", box_hits_plate, 0.3, 2e-4),
-        cornered("grasp", gripper, 0.3, 2e-4),
-        smooth("bushing", swinging, 1.0, 1e-3),
-        smooth("struts", |s| struck_ring(strut(), s), 1.0, 1e-3),
-        cornered("struts with stops", |s| struck_ring(stopped(), s), 1.0, 2e-4),
-        cornered("latch with pull-in", |s| latched(f64::INFINITY, s), 1.2, 5e-4),
-        cornered("latch that lets go", |s| latched(30.0, s), 1.2, 5e-4),
-        smooth("driven base", shaken, 1.0, 1e-3),
-        Element {
-            command: swing,
-            ..smooth("viscous effect", |s| wheel_with(JointLaw::Viscous { damping: 0.4 }, s), 1.0, 1e-3)
-        },
-        Element {
-            command: swing,
-            ..cornered("dry effect", |s| wheel_with(JointLaw::Dry(DryLevel::Constant(0.3)), s), 1.0, 5e-4)
-        },
-        Element {
-            command: swing,
-            ..smooth(
-                "ripple",
-                |s| wheel_with(JointLaw::Ripple { amplitude: 0.5, order: 6.0, phase: 0.2 }, s),
-                1.0,
-                1e-3,
-            )
-        },
-        Element {
-            command: swing,
-            ..smooth("cable", |s| wheel_with(JointLaw::Cable { stiffness: 5.0, rest: 0.3 }, s), 1.0, 1e-3)
-        },
-        smooth(
-            "disturbance",
-            |s| wheel_with(JointLaw::Periodic { amplitude: 0.8, frequency: 1.0, phase: 0.2 }, s),
-            0.7,
-            1e-3,
-        ),
-        Element { command: swing, ..smooth("gear", |s| geared(0.0, s), 1.0, 2e-4) },
-        Element { command: swing, ..cornered("gear with play", |s| geared(5e-3, s), 1.0, 2e-4) },
-        Element { command: swing, ..smooth("lag", |s| wheel_of(&[lag()], |_| {}, s), 1.0, 5e-4) },
-        smooth("loads on a body", loaded, 1.0, 1e-3),
-        smooth("parts in a body", with_parts, 2.0, 2e-3),
-        Element { command: one, ..smooth("tilt", tilted, 1.0, 1e-3) },
+        of("normal spring and damper", |s| flying_ball(linear(1e4, 30.0), 3e-3, -0.5, s)),
+        of("Hunt-Crossley", |s| flying_ball(hunt_crossley(2e5, 1.5, 0.6), 3e-3, -0.5, s)),
+        of("undamped spring", |s| flying_ball(linear(1e4, 0.0), 3e-3, -0.5, s)),
+        longer("bristle", |s| sliding(bristle(0.4, 2e4, 30.0), s)),
+        longer("bristle with levels", |s| sliding(levels(), s)),
+        longer("spin resistance", spinning_ball),
+        of("bed", sliding_disc),
+        longer("box on a plate", box_hits_plate),
+        longer("grasp", gripper),
+    ]
+}
+
+fn mechanisms() -> Vec<Element> {
+    let of = Force::Mechanism;
+    vec![
+        smooth("bushing", of, swinging, [1.0, 1e-3]),
+        smooth("struts", of, |s| struck_ring(strut(), s), [1.0, 1e-3]),
+        cornered("struts with stops", of, |s| struck_ring(stopped(), s), [1.0, 2e-4]),
+        cornered("latch with pull-in", of, |s| latched(f64::INFINITY, s), [1.2, 5e-4]),
+        cornered("latch that lets go", of, |s| latched(30.0, s), [1.2, 5e-4]),
+        smooth("driven base", of, shaken, [1.0, 1e-3]),
+    ]
+}
+
+fn bodies() -> Vec<Element> {
+    let of = |name, build| smooth(name, Force::External, build, [1.0, 1e-3]);
+    vec![
+        Element { force: Force::Hidden, ..of("free arm", moving_arm) },
+        Element { command: one, duration: 2.0, ..of("thrust and drag", thrust_and_drag) },
+        of("gravity gradient", falling_arm),
+        of("loads on a body", loaded),
+        Element { duration: 2.0, step: 2e-3, ..of("parts in a body", with_parts) },
+        Element { command: one, ..of("tilt", tilted) },
+    ]
+}
+
+fn joints() -> Vec<Element> {
+    let of = |name, build| swung(smooth(name, Force::Wheel, build, [1.0, 1e-3]));
+    let corner = |name, build, step| swung(cornered(name, Force::Wheel, build, [0.5, step]));
+    let stopped = |s: &Setup| wheel_of(&[], |j| j.position_limits = Some([-0.1, 0.12]), s);
+    let dry = |s: &Setup| wheel_with(JointLaw::Dry(DryLevel::Constant(0.3)), s);
+    vec![
+        Element { force: Force::Hidden, duration: 0.5, step: 2e-4, ..of("joint drives", driven_arm) },
+        of("joint damping", |s| wheel_of(&[], |j| j.damping = 0.4, s)),
+        corner("joint friction", |s| wheel_of(&[], |j| j.friction = 0.3, s), 1e-3),
+        corner("joint stops", stopped, 4e-5),
+        of("viscous effect", |s| wheel_with(JointLaw::Viscous { damping: 0.4 }, s)),
+        corner("dry effect", dry, 5e-4),
+        of("ripple", |s| wheel_with(JointLaw::Ripple { amplitude: 0.5, order: 6.0, phase: 0.2 }, s)),
+        of("cable", |s| wheel_with(JointLaw::Cable { stiffness: 5.0, rest: 0.3 }, s)),
+        of("disturbance", |s| wheel_with(JointLaw::Periodic { amplitude: 0.8, frequency: 1.3, phase: 0.2 }, s)),
+        Element { step: 2e-4, ..of("gear", |s| geared(0.0, s)) },
+        corner("gear with play", |s| geared(5e-3, s), 2e-4),
+        Element { step: 5e-4, ..of("lag", |s| wheel_of(&[lag()], |_| {}, s)) },
     ]
 }
 
