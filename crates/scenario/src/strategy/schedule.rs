@@ -14,6 +14,7 @@ pub(super) struct SchedulePlayer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Target {
     Position,
+    /// Of a drive without stiffness: a loop on the rate alone.
     Velocity,
     Effort,
 }
@@ -23,7 +24,6 @@ impl Target {
     pub(super) fn of(kind: &ActuatorKind) -> Self {
         match kind {
             ActuatorKind::JointDrive { stiffness, .. } if *stiffness > 0.0 => Self::Position,
-            // A pure rate loop has no use for a position.
             ActuatorKind::JointDrive { .. } => Self::Velocity,
             ActuatorKind::JointEffort { .. } | ActuatorKind::Thruster { .. } | ActuatorKind::LatchRelease { .. } => {
                 Self::Effort
