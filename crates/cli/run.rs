@@ -52,7 +52,7 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let target = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out").join(&mission.scenario.name));
     let folder = OutputFolder::create(&target)?;
     let scene = scene(&mission);
-    let plan = recorder_plan(&mission, &scene);
+    let plan = recorder_plan(&mission, &scene)?;
     let mut viewer = live::open(arguments, &plan, &mission, &scene)?;
     let mut recorder = Recorder::new(&mission.world, plan, viewer.as_mut().map(|v| v as &mut dyn SampleSink));
     let mut judge = Judge::new(&mission);

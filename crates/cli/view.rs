@@ -61,7 +61,7 @@ fn write(_: &OutputFolder, _: &Log, _: &Scene, _: &str) -> anyhow::Result<()> {
 fn start_of_scenario(arguments: &Arguments) -> anyhow::Result<(Log, Scene)> {
     let mission = scenario::build(&scenario::load(&arguments.file, &arguments.set)?)?;
     let scene = recording::scene(&mission);
-    let plan = recording::recorder_plan(&mission, &scene);
+    let plan = recording::recorder_plan(&mission, &scene)?;
     let mut recorder = Recorder::new(&mission.world, plan, None);
     recorder.observe(&mission.world);
     if let Some(error) = recorder.error.take() {

@@ -22,5 +22,5 @@ pub use dynamics::{
 };
 pub use kinematics::Kinematics;
 pub use mesh::{MeshError, SearchPaths, TextPlace, load_mesh};
-pub use tree::{Body, Joint, Link, Tree};
+pub use tree::{Body, Joint, Link, SlidingPoint, Tree};
 pub use urdf::{UrdfError, UrdfErrors, UrdfProblem, load_urdf, parse_urdf};

@@ -35,6 +35,17 @@ pub struct Tree {
     pub nv: usize,
     /// Configuration where every joint is at zero.
     pub q_zero: Vec<f64>,
+    /// Point masses that [`Tree::add_sliding_point`] has added.
+    pub sliding_points: Vec<SlidingPoint>,
+}
+
+/// A point mass that slides along the axes of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SlidingPoint {
+    /// The first of its three joints: along x; those along y and z follow.
+    pub joint: usize,
+    /// Its link.
+    pub link: usize,
 }
 
 /// A moving body: a link and all that is fixed to it.
@@ -120,6 +131,7 @@ impl Tree {
             nq: 0,
             nv: 0,
             q_zero: Vec::new(),
+            sliding_points: Vec::new(),
         };
         let mut joint_of_description = vec![usize::MAX; robot.joints.len()];
         for (i, link) in robot.links.iter().enumerate() {
@@ -253,7 +265,13 @@ impl Tree {
         }
         let inertia = self.bodies[parent].inertia;
         self.links.push(Link { name: name.to_owned(), body: parent, frame_bl: Frame::identity(), inertia });
+        self.sliding_points.push(SlidingPoint { joint: first, link: self.links.len() - 1 });
         first
+    }
+
+    /// The sliding point whose mass is a body.
+    pub fn sliding_point(&self, body: usize) -> Option<SlidingPoint> {
+        self.sliding_points.iter().copied().find(|point| self.links[point.link].body == body)
     }
 
     /// Number of screws: joint freedoms, mimic joints counted.

@@ -13,6 +13,7 @@ pub mod outcome;
 mod overrides;
 pub mod recording;
 mod schema;
+mod sensors;
 pub mod spec;
 mod spelling;
 mod starter;

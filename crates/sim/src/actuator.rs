@@ -328,6 +328,11 @@ pub(crate) fn calc_thrust(index: usize, acting: &Acting<'_>) -> f64 {
 }
 
 impl Model {
+    /// Whether a gear that yields or has play stands between the motor of a coordinate and its joint.
+    pub fn has_gear(&self, coordinate: usize) -> bool {
+        self.coordinates[coordinate].series.is_some()
+    }
+
     /// Position and rate of the motor that drives a coordinate, where encoder and tachometer sit.
     pub(crate) fn calc_motor_side(&self, state: &State, coordinate: usize) -> (f64, f64) {
         let (q, v) = (state.q[self.coordinates[coordinate].q_index], state.v[coordinate]);

@@ -140,14 +140,25 @@ fn samples(scenario: &Scenario) -> u64 {
 
 /// The file's words are ahead of the simulator's: what is understood and not yet simulated is refused, never ignored.
 fn refuse_what_is_not_simulated(scenario: &Scenario, faults: &mut Faults<'_>) {
-    for (i, _) in scenario.sensors.iter().enumerate().filter(|(_, s)| !s.kind.is_simulated()) {
-        let reason = "sensors of this kind are read and checked, but not simulated in this version; remove the entry";
-        faults.add(&format!("sensor[{i}]"), reason);
+    for (i, sensor) in scenario.sensors.iter().enumerate().filter(|(_, s)| !s.kind.is_simulated()) {
+        let reason = format!(
+            "sensors of kind {} are not simulated in this version; joints and bodies are recorded as they are \
+             (joint.….position, body.….angular_velocity, …), with faults by an [[effect]] at sensor:…, and a [[sensor]] can be of \
+             kind contact-force or mechanism-force; remove the entry",
+            sensor.kind.text()
+        );
+        faults.add(&format!("sensor[{i}].kind"), reason);
     }
 }
 
-/// Every sensor measures something.
+/// Every sensor measures something, and every fault of a sensor is one that it can have.
 fn check_sensors(scenario: &Scenario, model: &Model, faults: &mut Faults<'_>) {
+    let of_sensor = |(_, e): &(usize, &spec::Effect)| e.name.starts_with("sensor-");
+    for (i, effect) in scenario.effects.iter().enumerate().filter(of_sensor) {
+        if let Some(fault) = crate::measure::find_fault(scenario, model, effect) {
+            faults.add(&format!("effect[{i}].place"), fault);
+        }
+    }
     for (i, sensor) in scenario.sensors.iter().enumerate() {
         let name = format!("sensor.{}.force", sensor.name);
         if let Err(error) = crate::measure::Gauge::resolve(scenario, model, &name) {
