@@ -39,6 +39,7 @@ mod rk4;
 mod rk4_bristle;
 mod run;
 mod solve;
+mod speed_limit;
 mod state;
 mod step;
 mod weight;

@@ -7,6 +7,7 @@ use super::creep::CreepGauge;
 use super::docking::DockingWatch;
 use super::keep_out::KeepOutWatch;
 use super::mechanisms::MechanismWatch;
+use super::motors::MotorWatch;
 use super::{Metric, Outcome};
 use crate::build::Mission;
 use crate::spec::{Scenario, Strategy};
@@ -27,6 +28,7 @@ pub struct Judge {
     keep_out: Option<KeepOutWatch>,
     creep: CreepGauge,
     mechanisms: MechanismWatch,
+    motors: MotorWatch,
     audit: Option<MomentumAudit>,
     energy_start: Energy,
     events: Vec<Event>,
@@ -49,6 +51,7 @@ impl Judge {
             keep_out: KeepOutWatch::new(&scenario.keep_out, model),
             creep: CreepGauge::new(mission.steps, world.model().step),
             mechanisms: MechanismWatch::new(world),
+            motors: MotorWatch::new(scenario, world),
             audit: MomentumAudit::applies(world).then(|| MomentumAudit::new(world)),
             energy_start: Energy::of(world),
             events: Vec::new(),
@@ -135,6 +138,7 @@ impl Judge {
         }
         self.contacts.add_metrics(world.model(), &mut metrics);
         self.mechanisms.add_metrics(world, &mut metrics);
+        self.motors.add_metrics(&mut metrics);
         self.add_accounts(world, &mut metrics);
         metrics
     }
@@ -189,6 +193,7 @@ impl Observer for Judge {
             capture.observe(world, &mut self.events);
         }
         self.mechanisms.observe(world, &mut self.events);
+        self.motors.observe(world, &mut self.events);
         self.creep.observe(world);
         if world.state().steps.is_multiple_of(AUDIT_EVERY)
             && let Some(audit) = &mut self.audit

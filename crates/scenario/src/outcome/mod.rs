@@ -9,6 +9,7 @@ mod expect;
 mod judge;
 mod keep_out;
 mod mechanisms;
+mod motors;
 
 pub(crate) use docking::calc_base_motion;
 pub use expect::{Verdict, check_expectations};
