@@ -47,7 +47,11 @@ pub fn make(plan: &Plan, run: u64, keep: Keep) -> Finished {
 }
 
 fn attempt(plan: &Plan, run: u64, keep: Keep, started: Instant) -> Finished {
-    let built = plan.scenario_of(run).and_then(|(s, drawn)| Ok((plan.build(&s)?, drawn)));
+    let built = plan.scenario_of(run).and_then(|(s, drawn)| {
+        let mission = plan.build(&s)?;
+        scenario::check_start(&mission)?;
+        Ok((mission, drawn))
+    });
     let (mut mission, drawn) = match built {
         Ok(built) => built,
         Err(error) => {

@@ -360,6 +360,11 @@ impl Model {
         (self.scene.colliders()[a].body, self.scene.colliders()[b].body)
     }
 
+    /// Radius of the ball about a global body's origin that holds its shapes, m; zero where it has none, and for what has no end.
+    pub fn collider_radius(&self, body: usize) -> f64 {
+        self.collider_radius[body].max(0.0)
+    }
+
     /// Name of a body for messages: `vehicle/joint's child`.
     pub fn body_name(&self, body: usize) -> String {
         let Some(&(vehicle, local)) = self.owners.get(body) else { return "world".to_owned() };

@@ -63,13 +63,13 @@ impl Judge {
         &self.events
     }
 
-    /// Whether this step brought the first contact, and the sum of its contact forces, N.
-    fn observe_contact(&mut self, world: &World) -> (bool, f64) {
-        let Some(pair) = self.contacts.observe(world) else { return (false, self.contacts.force) };
+    /// Whether this step brought the first contact.
+    fn observe_contact(&mut self, world: &World) -> bool {
+        let Some(pair) = self.contacts.observe(world) else { return false };
         let (time, step) = (world.state().time, world.state().steps);
         let text = format!("first contact: {pair}");
         self.events.push(Event { t: time, step, kind: EventKind::Contact, text });
-        (true, self.contacts.force)
+        true
     }
 
     /// What became of the run.
@@ -178,9 +178,9 @@ fn optional(value: Option<f64>) -> Value {
 
 impl Observer for Judge {
     fn observe(&mut self, world: &World) -> Flow {
-        let contact = if world.state().steps > 0 { self.observe_contact(world) } else { (false, 0.0) };
+        let touched = world.state().steps > 0 && self.observe_contact(world);
         let flow = match &mut self.docking {
-            Some(docking) => docking.observe(world, contact, &mut self.events),
+            Some(docking) => docking.observe(world, touched, &mut self.events),
             None => Flow::Continue,
         };
         if let Some(host) = &mut self.host {

@@ -6,6 +6,7 @@ mod contacts;
 mod creep;
 mod docking;
 mod expect;
+mod interface;
 mod judge;
 mod keep_out;
 mod mechanisms;

@@ -161,8 +161,9 @@ fn behind_a_gear_that_yields_it_is_the_motor_that_stops_at_the_limit() {
         for _ in 0..6_000 {
             run(&mut world, 1);
             let (work_now, rate_now) = (world.state().account.actuator_work, world.motor_side(0).1);
-            // The gear's spring may swing the rotor beyond; the motor gives nothing there.
-            let is_beyond = rate > LIMIT * (1.0 + 1e-9) && rate_now > LIMIT * (1.0 + 1e-9);
+            // The gear's spring may swing the rotor beyond; the motor gives nothing there, but for a step that leads back to L,
+            // τ h/B = 0.03 rad/s.
+            let is_beyond = rate.min(rate_now) > LIMIT + 0.03;
             assert!(!is_beyond || work_now == work, "{integrator:?}: {} J at {rate_now} rad/s", work_now - work);
             (work, rate) = (work_now, rate_now);
         }
