@@ -1,16 +1,17 @@
 //! Shapes that stand inside each other at t = 0: what contact stores there before anything has moved.
 //!
-//! A contact law answers to depth, so an overlap that nobody meant throws its bodies apart with energy from nowhere. What
-//! lies or is held at rest overlaps too, by what its load presses it in. So, per pair of shapes and summed over its points,
+//! A contact law answers to depth, so an overlap that nobody meant throws its bodies apart with energy from nowhere, or
+//! presses for ever on the joints that hold them. What lies or is held at rest overlaps too, by what its load presses it in. So,
+//! per pair of shapes and summed over its points,
 //!
 //!   E = Σ ∫ fₙ dδ       stored at t = 0, J             δ = Σ fₙ δ_i / Σ fₙ      mean depth, m
 //!   N                   what the contacts bear at rest, N: none gives way and none pulls, under gravity, drives and mechanisms
-//!   E − N δ > 0         it parts its bodies although they are pressed together
+//!   E − N δ > 0         more is stored than the load takes on the way out
 //!
-//! The second says that it is deeper than its load would ever press it if it were let go at the first touch: of a linear spring,
+//! The last says that it is deeper than its load would ever press it if it were let go at the first touch: of a linear spring,
 //! deeper than twice its deflection at rest. N is that of the model as it stands, at rest, with the controller's first
-//! command and contacts that bear any load and store nothing. What parts more slowly than [`QUIET`] is left alone: it is
-//! rounding of the file's numbers, or held from several sides.
+//! command and contacts that bear any load and store nothing. Where the excess could throw the lighter body no faster than
+//! [`QUIET`] it is left alone: it is rounding of the file's numbers.
 
 use super::Mission;
 use super::faults::Faults;
@@ -24,12 +25,12 @@ use std::sync::Arc;
 
 /// Depth below which nothing is looked at, m: rounding of lengths.
 const ROUNDING: f64 = 1e-9;
-/// Speed at which an overlap may part its bodies, m/s: a twentieth of the slowest approach of a docking.
+/// Speed at which an excess may throw the lighter body, m/s: a third of the slowest approach in the catalogue.
 const QUIET: f64 = 1e-3;
-/// Step of the two looks at the start's accelerations, s: contact moves by nothing in it, velocities by 10 digits above rounding.
+/// Step of the look at the start's loads, s: nothing moves in it.
 const PROBE: f64 = 1e-6;
-/// How much more than the bodies' inertia a contact that bears any load resists in that step.
-const UNYIELDING: f64 = 1e4;
+/// How much more than the bodies' inertia a contact that bears any load resists in that step: the load's relative error.
+const UNYIELDING: f64 = 1e6;
 /// So many pairs are told one by one.
 const MOST_TOLD: usize = 8;
 
@@ -45,14 +46,14 @@ struct Overlap {
     /// Force of the contact, N, and what it bears at rest, N.
     force: f64,
     load: f64,
-    /// Acceleration with which the points part, mean by force, m/s².
-    parting: f64,
+    /// Of the lighter body, kg.
+    mass: f64,
 }
 
 /// Refuses a mission whose shapes stand inside each other.
 pub(super) fn check(mission: &Mission) -> Result<(), ScenarioErrors> {
     let found = find(&mission.world, &*mission.controller);
-    let mut parting: Vec<&Overlap> = found.iter().filter(|o| o.released() > 0.0 && o.speed() > QUIET).collect();
+    let mut parting: Vec<&Overlap> = found.iter().filter(|o| o.speed() > QUIET).collect();
     if parting.is_empty() {
         return Ok(());
     }
@@ -71,13 +72,13 @@ pub(super) fn check(mission: &Mission) -> Result<(), ScenarioErrors> {
 
 impl Overlap {
     /// What is left of its energy when its bodies part against the load, J.
-    fn released(&self) -> f64 {
-        self.energy - self.load * self.depth
+    fn excess(&self) -> f64 {
+        (self.energy - self.load * self.depth).max(0.0)
     }
 
-    /// Speed at which they part, m/s: that of the mass which the force accelerates.
+    /// Speed that this would give the lighter body, m/s.
     fn speed(&self) -> f64 {
-        (2.0 * self.released().max(0.0) * self.parting.max(0.0) / self.force).sqrt()
+        (2.0 * self.excess() / self.mass).sqrt()
     }
 }
 
@@ -90,14 +91,8 @@ fn find(world: &World, controller: &dyn Controller) -> Vec<Overlap> {
         return found;
     }
     start.control(controller);
-    let elastic = probe(&start, &|law, _| PairLaw { friction: None, pivot: None, normal: undamped(&law.normal), ..*law });
-    let bearing = probe(&start, &|law, mass| {
-        let damping = UNYIELDING * mass / PROBE;
-        let normal = Normal::new(NormalLaw::SpringDamper { stiffness: 0.0, damping });
-        PairLaw { friction: None, pivot: None, normal, ..*law }
-    });
+    let bearing = bear(&start);
     for overlap in &mut found {
-        overlap.parting = calc_parting(&elastic, overlap);
         overlap.load = bearing.touches().filter(|t| t.pair == overlap.pair).map(|t| t.normal_force).sum();
     }
     found
@@ -114,8 +109,8 @@ fn stored(world: &World) -> Vec<Overlap> {
             continue;
         }
         if found.last().is_none_or(|last| last.pair != touch.pair) {
-            let (deepest, energy, force) = (0.0, 0.0, 0.0);
-            found.push(Overlap { pair: touch.pair, deepest, depth: 0.0, energy, force, load: 0.0, parting: 0.0 });
+            let (pair, mass) = (touch.pair, lighter(world.model(), touch.pair));
+            found.push(Overlap { pair, deepest: 0.0, depth: 0.0, energy: 0.0, force: 0.0, load: 0.0, mass });
         }
         if let Some(own) = found.last_mut() {
             own.depth = (own.depth * own.force + depth * force) / (own.force + force);
@@ -127,28 +122,31 @@ fn stored(world: &World) -> Vec<Overlap> {
     found
 }
 
-fn undamped(normal: &Normal) -> Normal {
-    let law = match normal.law {
-        NormalLaw::HuntCrossley { stiffness, exponent, .. } => {
-            NormalLaw::HuntCrossley { stiffness, exponent, dissipation: 0.0 }
-        }
-        NormalLaw::SpringDamper { stiffness, .. } => NormalLaw::SpringDamper { stiffness, damping: 0.0 },
-        NormalLaw::Constant { force } => NormalLaw::Constant { force },
+/// Mass of the lighter of a pair's bodies; of its whole vehicle where the body has none of its own, kg.
+fn lighter(model: &Model, pair: usize) -> f64 {
+    let mass = |body: usize| {
+        let Some(&(vehicle, local)) = model.owners.get(body) else { return f64::INFINITY };
+        let tree = &model.vehicles[vehicle].tree;
+        let own = tree.bodies[local].inertia.mass;
+        if own > 0.0 { own } else { tree.mass() }
     };
-    Normal { law, ..*normal }
+    let (a, b) = model.pair_bodies(pair);
+    mass(a).min(mass(b))
 }
 
-/// The world a moment after its start from rest, its contacts as `change` makes them of their laws and the mass (kg) of the lighter
-/// vehicle; those that press by a constant force stay.
-fn probe(start: &World, change: &dyn Fn(&PairLaw, f64) -> PairLaw) -> World {
+/// The world a moment after its start from rest, with contacts that neither give way nor push by themselves; those that
+/// press by a constant force stay.
+fn bear(start: &World) -> World {
     let mut model: Model = (**start.model()).clone();
     for pair in 0..model.laws.len() {
-        if !matches!(model.laws[pair].normal.law, NormalLaw::Constant { .. }) {
-            let (a, b) = model.pair_bodies(pair);
-            let mass = |body: usize| model.owners.get(body).map_or(f64::INFINITY, |o| model.vehicles[o.0].tree.mass());
-            let mass = mass(a).min(mass(b));
-            model.laws[pair] = change(&model.laws[pair], mass);
+        if matches!(model.laws[pair].normal.law, NormalLaw::Constant { .. }) {
+            continue;
         }
+        let (a, b) = model.pair_bodies(pair);
+        let mass = |body: usize| model.owners.get(body).map_or(f64::INFINITY, |o| model.vehicles[o.0].tree.mass());
+        let damping = UNYIELDING * mass(a).min(mass(b)) / PROBE;
+        let normal = Normal::new(NormalLaw::SpringDamper { stiffness: 0.0, damping });
+        model.laws[pair] = PairLaw { friction: None, pivot: None, normal, ..model.laws[pair] };
     }
     (model.step, model.integrator) = (PROBE, Integrator::ImplicitEuler);
     let mut state = start.state().clone();
@@ -161,31 +159,14 @@ fn probe(start: &World, change: &dyn Fn(&PairLaw, f64) -> PairLaw) -> World {
     world
 }
 
-/// Acceleration with which a pair's points part, mean by force, m/s².
-fn calc_parting(world: &World, overlap: &Overlap) -> f64 {
-    let model = world.model();
-    let (a, b) = model.pair_bodies(overlap.pair);
-    let mut sum = (0.0, 0.0);
-    for touch in world.touches().filter(|t| t.pair == overlap.pair && t.normal_force > 0.0) {
-        let at = |body: usize| {
-            let Some(&(vehicle, local)) = model.owners.get(body) else { return spatial::Vec3::zeros() };
-            let kin = world.kinematics(vehicle);
-            kin.vel[local].at(&(touch.point_w - kin.anchor))
-        };
-        let gained = touch.normal_w.dot(&(at(b) - at(a)));
-        sum = (sum.0 + touch.normal_force * gained / PROBE, sum.1 + touch.normal_force);
-    }
-    if sum.1 > 0.0 { sum.0 / sum.1 } else { 0.0 }
-}
-
 fn tell(scenario: &Scenario, model: &Model, overlap: &Overlap, faults: &mut Faults<'_>) {
     let [a, b] = model.scene.pairs()[overlap.pair];
     let [name_a, name_b] = [a, b].map(|c| model.collider_names[c].as_str());
     let bodies = [a, b].map(|c| model.scene.colliders()[c].body);
     let held = if overlap.load > 0.0 { format!(", of which {:.3} N hold", overlap.load) } else { String::new() };
     let facts = format!(
-        "\"{name_a}\" and \"{name_b}\" overlap by {:.3} mm at t = 0: contact presses with {:.3} N{held}, stores {:.3} J and would \
-         part them at {:.3} m/s",
+        "\"{name_a}\" and \"{name_b}\" overlap by {:.3} mm at t = 0: contact presses with {:.3} N{held}, and stores {:.3} J, \
+         enough to throw the lighter at {:.3} m/s",
         1e3 * overlap.deepest,
         overlap.force,
         overlap.energy,

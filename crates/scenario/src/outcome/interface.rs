@@ -53,3 +53,55 @@ impl Interface {
         contact.chain(latches).fold(Vec3::zeros(), |sum, force| sum + force)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Blocks of 1 kg in a row: `a` held to `b` by an engaged latch, `c` welded to `b`; a jet of 10 N on `b`.
+    fn interface() -> (World, Interface) {
+        let block = |name: &str, x: f64| {
+            format!("[[vehicle]]\nname = \"{name}\"\nurdf = \"robots/bench/peer-block.urdf\"\npose = {{ position_m = [{x}, 0, 0] }}\n")
+        };
+        let joined = |name: &str, kind: &str, a: &str, b: &str, rest: &str| {
+            format!("[[mechanism]]\nname = \"{name}\"\nkind = \"{kind}\"\na = {{ on = \"{a}/block\" }}\nb = {{ on = \"{b}/block\" }}\n{rest}\n")
+        };
+        let latch = "engaged = true\ncapture = { axial_m = [0, 1], lateral_m = 1, tilt_deg = 9 }\n\
+                     hold = { stiffness_n_per_m = 1e4, damping_n_s_per_m = 200, torsional_stiffness_n_m_per_rad = 100, \
+                     torsional_damping_n_m_s_per_rad = 2 }";
+        let text = format!(
+            "name = \"t\"\nseed = 1\nduration_s = 2.0\n[contact_default]\nenabled = false\n{}{}{}{}{}\
+             [[actuator]]\nname = \"jet\"\nkind = \"thruster\"\nlink = \"b/block\"\nposition_m = [0, 0, 0]\n\
+             direction = [1, 0, 0]\nmax_force_n = 10\n",
+            block("a", 0.0),
+            block("b", 0.3),
+            block("c", 0.6),
+            joined("grip", "latch", "a", "b", latch),
+            joined("joint", "weld", "c", "b", "frequency_hz = 20")
+        );
+        let file = format!("{}/../../s.toml", env!("CARGO_MANIFEST_DIR"));
+        let scenario = crate::parse(&text, &file, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let mut world = crate::build(&scenario).unwrap_or_else(|e| panic!("{e}")).world;
+        world.commands_mut()[0].effort = 10.0;
+        for _ in 0..4_000 {
+            world.advance().expect("they fly");
+        }
+        let interface = Interface::new(world.model(), 1, 0, &[0]);
+        (world, interface)
+    }
+
+    #[test]
+    fn the_latch_passes_on_what_moves_the_port_and_the_rider_counts_with_its_carrier() {
+        let (world, interface) = interface();
+        assert_eq!(interface.sides, [-1.0, 1.0, 1.0]);
+        // Three blocks of 1 kg under 10 N: the port's one is drawn with a third, and draws back on the visitor.
+        let force = interface.calc_force(&world);
+        assert!((force - Vec3::new(-10.0 / 3.0, 0.0, 0.0)).norm() < 1e-3, "{force}");
+    }
+
+    #[test]
+    fn two_that_are_tied_together_from_the_beginning_stand_for_themselves() {
+        let (world, _) = interface();
+        assert_eq!(Interface::new(world.model(), 1, 0, &[]).sides, [-1.0, 1.0, 0.0]);
+    }
+}

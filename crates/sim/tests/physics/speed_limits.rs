@@ -157,7 +157,7 @@ fn behind_a_gear_that_yields_it_is_the_motor_that_stops_at_the_limit() {
         spec.vehicles[0].tree.joints[0].velocity_limit = LIMIT;
         let mut world = world(spec);
         world.commands_mut()[0].effort = 6.0;
-        let (mut work, mut rate) = (0.0, 0.0);
+        let (mut work, mut rate) = (0.0_f64, 0.0_f64);
         for _ in 0..6_000 {
             run(&mut world, 1);
             let (work_now, rate_now) = (world.state().account.actuator_work, world.motor_side(0).1);
