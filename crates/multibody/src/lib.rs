@@ -5,6 +5,7 @@
 mod aba;
 mod description;
 mod dynamics;
+mod followers;
 mod inertial;
 mod kinematics;
 mod mesh;
@@ -20,6 +21,7 @@ pub use dynamics::{
     Accelerations, Dynamics, add_gravity, calc_armature_energy, calc_centroidal_momentum, calc_kinetic_energy,
     calc_locked_inertia, calc_momentum, calc_potential_energy,
 };
+pub use followers::EmptyRange;
 pub use kinematics::Kinematics;
 pub use mesh::{MeshError, SearchPaths, TextPlace, load_mesh};
 pub use tree::{Body, Joint, Link, SlidingPoint, Tree};

@@ -12,7 +12,8 @@
 //! | planar | x, y, θ in the plane normal to the axis | vx, vy in the child's axes, θ̇ |
 //!
 //! A mimic joint has no coordinate of its own: it reads its leader's, and its screw is scaled by the multiplier, so
-//! that velocities, forces and inertias fold into the leader's coordinate by themselves.
+//! that velocities, forces and inertias fold into the leader's coordinate by themselves; its limits, damping and friction
+//! are laid on the leader's ([`crate::followers`]).
 
 use crate::{JointDescription, JointKind, RobotDescription};
 use nalgebra::{Quaternion, UnitQuaternion};
@@ -95,15 +96,15 @@ pub struct Joint {
     pub offset: f64,
     /// Whether it follows another joint.
     pub is_mimic: bool,
-    /// Stops, rad or m.
+    /// Stops, rad or m; a leader's are narrowed to where its followers stay within theirs.
     pub position_limits: Option<[f64; 2]>,
     /// Largest effort, N·m or N.
     pub effort_limit: f64,
-    /// Largest speed, rad/s or m/s.
+    /// Largest speed, rad/s or m/s; a leader's is the least that it or a follower allows.
     pub velocity_limit: f64,
-    /// Viscous friction, N·m·s/rad or N·s/m.
+    /// Viscous friction, N·m·s/rad or N·s/m; a leader's with that of its followers.
     pub damping: f64,
-    /// Dry friction level, N·m or N.
+    /// Dry friction level, N·m or N; a leader's with that of its followers.
     pub friction: f64,
     /// Inertia that belongs to the coordinate and to no body, kg·m² or kg: a geared drive's rotor, reflected to the
     /// joint, its gyroscopic terms neglected. It adds to the diagonal of the mass matrix and is no part of the momentum.
@@ -152,6 +153,7 @@ impl Tree {
             tree.links.push(Link { name: link.name.clone(), body, frame_bl, inertia });
         }
         tree.number_coordinates(robot, &joint_of_description);
+        tree.load_leaders();
         tree
     }
 

@@ -14,6 +14,7 @@ use crate::actuator::CoordinatePoint;
 use crate::contacts::Touch;
 use crate::effect::{self, Acting};
 use crate::model::{Model, PairLaw};
+use crate::speed_limit::{self, Branch};
 use crate::state::{ContactMemory, State};
 use crate::workspace::Workspace;
 use spatial::{Twist, Vec3, Wrench};
@@ -37,6 +38,8 @@ pub(crate) struct Passage {
     pub elapsed: f64,
     /// Deflection of a gear at mid-way, and its rate.
     pub gear: [f64; 2],
+    /// What the motor's speed limit left of its effort, where it is at that limit.
+    pub limited: Option<f64>,
 }
 
 /// Twist of a body about its vehicle's anchor, with which the scheme displaces it: gains are spatial, those of the velocity field
@@ -149,7 +152,8 @@ impl Passage {
             let [from, to] = [ws.effects_start[at], state.effects[at]];
             [0.5 * (from + to), (to - from) / h]
         });
-        Self { point, time: ws.end - 0.5 * h, q, rate, elapsed: h, gear }
+        let limited = find_limited(model, state, ws, i);
+        Self { point, time: ws.end - 0.5 * h, q, rate, elapsed: h, gear, limited }
     }
 
     fn of_stage(model: &Model, state: &State, ws: &Workspace, i: usize) -> Self {
@@ -159,6 +163,18 @@ impl Passage {
             [state.effects[at], state.effects[at + 1]]
         });
         let (q, rate) = (state.q[coordinate.q_index], state.v[i]);
-        Self { point: ws.coordinate_points[i], time: state.time, q, rate, elapsed: 1.0, gear }
+        let limited = find_limited(model, state, ws, i);
+        Self { point: ws.coordinate_points[i], time: state.time, q, rate, elapsed: 1.0, gear, limited }
     }
+}
+
+/// The effort that a motor at its speed limit gave.
+fn find_limited(model: &Model, state: &State, ws: &Workspace, i: usize) -> Option<f64> {
+    let (limit, force) = (model.coordinates[i].speed_limit, &ws.coordinate_forces[i]);
+    if limit.is_infinite() {
+        return None;
+    }
+    let is_falling = force.branch.is_some_and(|branch| branch != Branch::Full);
+    let is_there = is_falling || speed_limit::is_reached(limit, model.calc_motor_side(state, i).1);
+    is_there.then_some(force.driven)
 }

@@ -41,6 +41,7 @@ mod rk4;
 mod rk4_bristle;
 mod run;
 mod solve;
+mod speed_limit;
 mod state;
 mod step;
 mod weight;

@@ -16,8 +16,9 @@ use crate::model::Model;
 use crate::pivots;
 use crate::rk4_bristle::{self, Stage, Track};
 use crate::solve;
+use crate::speed_limit;
 use crate::state::{Account, ContactMemory, State};
-use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
+use crate::step::{MAX_SOLVES, add_impulses, begin, calc_bias, calc_external, finish, moved_base};
 use crate::workspace::Workspace;
 use friction::{BrushRate, Trial, carry};
 use spatial::{Mat3, Twist, Vec3, Wrench, rotation_rate_of_vector};
@@ -219,9 +220,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     // Bases move by their momentum; accelerations are those of joints alone.
     if model.nv() > 0 {
         calc_bias(model, state, ws, false);
-        if !solve::solve_joints(model, ws) {
-            ws.v_gain.fill(f64::NAN);
-        }
+        solve_joints(model, state, ws, &rk.start.v);
         for (rest, _) in &ws.held {
             let share = std::mem::take(&mut ws.v_gain[rest.coordinate]).abs() / rest.acceleration;
             ws.unrest = if share.is_nan() { f64::INFINITY } else { ws.unrest.max(share) };
@@ -250,6 +249,18 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
         let xi = &mut ws.displacement[v.clone()];
         vehicle.tree.calc_difference(&rk.start.q[q.clone()], &state.q[q.clone()], xi);
         vehicle.tree.calc_displacement_rate(&rk.start.q[q], xi, &state.v[v.clone()], &mut rk.rate.xi[v]);
+    }
+}
+
+/// Accelerations of the joints, within the speed limits of their motors.
+fn solve_joints(model: &Model, state: &State, ws: &mut Workspace, v_start: &[f64]) {
+    for _ in 0..MAX_SOLVES {
+        if !solve::solve_joints(model, ws) {
+            return ws.v_gain.fill(f64::NAN);
+        }
+        if speed_limit::hold_at_stage(model, state, ws, v_start) {
+            break;
+        }
     }
 }
 
@@ -310,10 +321,12 @@ fn eval_coordinates(model: &Model, state: &State, ws: &mut Workspace, rk: &Stage
             dry_start: rk.start.dry[i],
             elapsed: ws.step,
             from: ws.since.map(|since| (rk.start.v[i], since)),
+            end: Some(rk.start.v[i]),
+            branch: None,
         };
         let force = coordinate.eval(&point, v, &Acting { model, state, step: ws.step, since: ws.since });
-        ws.coordinate_points[i] = point;
+        ws.coordinate_points[i] = CoordinatePoint { branch: force.branch, ..point };
         ws.coordinate_forces[i] = force;
-        ws.coordinate_lines[i] = (force.effort, 0.0);
+        ws.coordinate_lines[i] = (force.effort, ws.step * force.fall);
     }
 }

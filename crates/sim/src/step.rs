@@ -19,6 +19,7 @@ use crate::mechanism;
 use crate::model::{Base, Model};
 use crate::pivots;
 use crate::solve;
+use crate::speed_limit;
 use crate::state::State;
 use crate::workspace::{Workspace, world_wrench};
 use multibody::{Accelerations, Kinematics};
@@ -37,7 +38,7 @@ const LAW_TOLERANCE: f64 = 1e-3;
 /// Force (N or N·m) below which a difference is round-off and nobody's business.
 const FORCE_FLOOR: f64 = 1e-10;
 /// Most solves in a step.
-const MAX_SOLVES: u32 = 8;
+pub(crate) const MAX_SOLVES: u32 = 8;
 /// Largest (h ω)² at which the midpoint rule resolves a contact; beyond it the stiff form takes over.
 const RESOLVED: f64 = 0.1;
 
@@ -215,9 +216,11 @@ fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) 
             Scheme::SemiImplicitEuler => (0.0, 0.0, q, h * v, h),
         };
         let dry_start = state.dry[i];
-        let point = CoordinatePoint { q_base, moved_base, v_start: v, beta, theta, dry_start, elapsed, from: None };
+        let (from, end, branch) = (None, None, None);
+        let point =
+            CoordinatePoint { q_base, moved_base, v_start: v, beta, theta, dry_start, elapsed, from, end, branch };
         let force = coordinate.eval(&point, v, &Acting { model, state, step: h, since: None });
-        ws.coordinate_points[i] = point;
+        ws.coordinate_points[i] = CoordinatePoint { branch: force.branch, ..point };
         ws.coordinate_forces[i] = force;
         ws.coordinate_lines[i] = (force.effort, force.slope);
     }
@@ -272,7 +275,10 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
         state.work.solves += 1;
         state.work.rate_evaluations += 1;
         let first_midpoint_pass = scheme == Scheme::ImplicitMidpoint && pass == 0;
-        converged = scheme == Scheme::SemiImplicitEuler || laws_hold(model, state, ws, h);
+        converged = match scheme {
+            Scheme::SemiImplicitEuler => speed_limit::hold_in_step(model, state, ws),
+            _ => laws_hold(model, state, ws, h),
+        };
         must_factor = !converged;
         if first_midpoint_pass {
             recalc_bias_at_midpoint(model, state, ws);
@@ -345,6 +351,7 @@ fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
         joints_hold &= (law.effort - on_line).abs() <= LAW_TOLERANCE * law.effort.abs() + FORCE_FLOOR;
         ws.coordinate_forces[i] = crate::actuator::CoordinateForce { effort: on_line, ..law };
         ws.coordinate_lines[i] = (law.effort + law.slope * ws.v_gain[i], law.slope);
+        ws.coordinate_points[i].branch = law.branch;
     }
     let pivots_hold = pivots::laws_hold(model, ws);
     mechanism::laws_hold(model, ws) && pivots_hold && joints_hold && check.holds()

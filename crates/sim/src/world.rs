@@ -5,6 +5,7 @@ use crate::effect;
 use crate::error::StepError;
 use crate::mechanism::{self, MechanismKind, MechanismMemory, MechanismReport};
 use crate::model::{Integrator, Model};
+use crate::speed_limit;
 use crate::state::{ContactMemory, State};
 use crate::step::{self, Scheme};
 use crate::workspace::{Workspace, calc_world_momentum};
@@ -298,6 +299,11 @@ impl World {
     /// a gear yields, else the joint itself.
     pub fn motor_side(&self, coordinate: usize) -> (f64, f64) {
         self.model.calc_motor_side(&self.state, coordinate)
+    }
+
+    /// Whether the motors of a coordinate have reached the speed at which they stop pushing.
+    pub fn is_at_speed_limit(&self, coordinate: usize) -> bool {
+        speed_limit::is_reached(self.model.coordinates[coordinate].speed_limit, self.motor_side(coordinate).1)
     }
 
     fn make_step(&mut self) -> Result<(), StepError> {

@@ -12,6 +12,7 @@ mod faults;
 mod kinematics;
 mod laws;
 mod mechanisms;
+mod overlap;
 mod shapes;
 mod start;
 mod stock;
@@ -57,12 +58,20 @@ impl std::fmt::Debug for Mission {
     }
 }
 
-/// Builds the world and the plan of a scenario.
+/// Builds the world and the plan of a scenario; refused if its shapes stand inside each other at t = 0.
 pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
-    build_from(scenario, &Stock::default())
+    let mission = build_from(scenario, &Stock::default())?;
+    check_start(&mission)?;
+    Ok(mission)
 }
 
-/// As [`build`], to the bit, with what an earlier build of the same scenario has loaded and prepared.
+/// Refuses a mission in which shapes stand inside each other at t = 0, deeper than what presses them together would hold them.
+pub fn check_start(mission: &Mission) -> Result<(), ScenarioErrors> {
+    overlap::check(mission)
+}
+
+/// As [`build`], to the bit, with what an earlier build of the same scenario has loaded and prepared, and without
+/// [`check_start`]: a caller may have another start in mind than the file's.
 pub fn build_from(scenario: &Scenario, stock: &Stock) -> Result<Mission, ScenarioErrors> {
     let mut faults = Faults::new(scenario);
     let plan = effects::check(scenario, &mut faults);

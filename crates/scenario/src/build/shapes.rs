@@ -1,14 +1,16 @@
 //! Collision shapes and the laws of their pairs.
 //!
 //! Shapes of different vehicles (and of the world) may touch unless a `[[contact]]` says `enabled = false`; shapes of one
-//! vehicle only where a `[[contact]]` names them. Every shape answers to its own name and to its link's.
+//! vehicle only where a `[[contact]]` names them. Links that a joint holds together overlap at that joint by their nature: a
+//! glob leaves them out (as MuJoCo and Drake do), and a `[[contact]]` that names both lets them touch. Every shape answers to
+//! its own name and to its link's.
 
 use super::beds;
 use super::faults::Faults;
 use super::laws::{pair_law, pivot_law};
-use crate::spec::{Grain, PointRule, Scenario};
+use crate::spec::{ContactRule, FrictionLaw, Grain, PointRule, Scenario};
 use contact::Shape;
-use multibody::{Geometry, RobotDescription};
+use multibody::{Geometry, RobotDescription, Tree};
 use record::docking_of_geometry;
 use sim::{Base, PairLaw, ShapeSpec, VehicleSpec};
 use spatial::Vec3;
@@ -38,6 +40,7 @@ pub(super) fn resolve(
     }
     add_scenario_shapes(scenario, (robots, vehicles), &mut shapes, faults);
     check_rules(scenario, &shapes, faults);
+    check_grains(scenario, faults);
     let mut pairs = Vec::new();
     for b in 1..shapes.len() {
         for a in 0..b {
@@ -153,14 +156,40 @@ fn check_rules(scenario: &Scenario, shapes: &[Named], faults: &mut Faults<'_>) {
     }
 }
 
+/// A grain and levels that differ across it do nothing without each other.
+fn check_grains(scenario: &Scenario, faults: &mut Faults<'_>) {
+    let differs = |law: &FrictionLaw| matches!(law, FrictionLaw::Bristle(law) if law.across_ratio != 1.0);
+    let by_default = differs(&scenario.contact_default.friction);
+    let needs = "does nothing without a grain; give the [[contact]] grain = { on = …, axis = … }";
+    for (i, rule) in scenario.contacts.iter().enumerate() {
+        let differs = rule.friction.as_ref().map_or(by_default, differs);
+        if rule.grain.is_some() && !differs {
+            let reason = "does nothing where the levels are the same in all directions; give the friction an across_ratio";
+            faults.add(&format!("contact[{i}].grain"), reason);
+        }
+        if rule.grain.is_none() && rule.friction.is_some() && differs {
+            faults.add(&format!("contact[{i}].friction"), format!("across_ratio {needs}"));
+        }
+    }
+    let is_used = |r: &ContactRule| r.grain.is_some() && r.friction.is_none();
+    if by_default && !scenario.contacts.iter().any(is_used) {
+        faults.add("contact_default.friction", format!("across_ratio {needs}"));
+    }
+}
+
 fn law_of_pair(scenario: &Scenario, vehicles: &[VehicleSpec], a: &Named, b: &Named) -> Option<PairLaw> {
     if body_of(vehicles, &a.spec) == body_of(vehicles, &b.spec) {
         return None;
     }
     let (names_a, names_b) = (a.names(), b.names());
     if a.spec.vehicle == b.spec.vehicle {
-        let named = |a: &str| names_b.iter().any(|b| scenario.contacts.iter().any(|r| r.matches(a, b)));
-        names_a.iter().find(|a| named(a))?;
+        let are_joined = a.spec.vehicle.is_some_and(|v| {
+            let tree = &vehicles[v].tree;
+            are_neighbours(tree, tree.links[a.spec.link].body, tree.links[b.spec.link].body)
+        });
+        let is_meant = |r: &ContactRule| !are_joined || !r.between.iter().any(|side| crate::is_glob(side));
+        let names = |r: &ContactRule| names_a.iter().any(|a| names_b.iter().any(|b| r.matches(a, b)));
+        scenario.contacts.iter().find(|r| is_meant(r) && names(r))?;
     }
     let law = scenario.contact_law(&names_a, &names_b);
     let rule = scenario.contact_rule(&names_a, &names_b);
@@ -176,6 +205,11 @@ fn law_of_pair(scenario: &Scenario, vehicles: &[VehicleSpec], a: &Named, b: &Nam
             ..pair_law(&law)
         }
     })
+}
+
+/// Whether one joint holds two bodies of a tree together.
+pub(super) fn are_neighbours(tree: &Tree, a: usize, b: usize) -> bool {
+    a != b && (tree.bodies[a].parent == b || tree.bodies[b].parent == a)
 }
 
 /// A grain in the axes of the body that carries the shape.

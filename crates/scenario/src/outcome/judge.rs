@@ -8,6 +8,7 @@ use super::docking::DockingWatch;
 use super::energy::EnergyWatch;
 use super::keep_out::KeepOutWatch;
 use super::mechanisms::MechanismWatch;
+use super::motors::MotorWatch;
 use super::{Metric, Outcome};
 use crate::build::Mission;
 use crate::spec::{Scenario, Strategy};
@@ -28,6 +29,7 @@ pub struct Judge {
     keep_out: Option<KeepOutWatch>,
     creep: CreepGauge,
     mechanisms: MechanismWatch,
+    motors: MotorWatch,
     audit: Option<MomentumAudit>,
     energy: EnergyWatch,
     events: Vec<Event>,
@@ -50,6 +52,7 @@ impl Judge {
             keep_out: KeepOutWatch::new(&scenario.keep_out, model),
             creep: CreepGauge::new(mission.steps, world.model().step),
             mechanisms: MechanismWatch::new(world),
+            motors: MotorWatch::new(scenario, world),
             audit: MomentumAudit::applies(world).then(|| MomentumAudit::new(world)),
             energy: EnergyWatch::new(world),
             events: Vec::new(),
@@ -61,13 +64,13 @@ impl Judge {
         &self.events
     }
 
-    /// Whether this step brought the first contact, and the sum of its contact forces, N.
-    fn observe_contact(&mut self, world: &World) -> (bool, f64) {
-        let Some(pair) = self.contacts.observe(world) else { return (false, self.contacts.force) };
+    /// Whether this step brought the first contact.
+    fn observe_contact(&mut self, world: &World) -> bool {
+        let Some(pair) = self.contacts.observe(world) else { return false };
         let (time, step) = (world.state().time, world.state().steps);
         let text = format!("first contact: {pair}");
         self.events.push(Event { t: time, step, kind: EventKind::Contact, text });
-        (true, self.contacts.force)
+        true
     }
 
     /// What became of the run.
@@ -137,6 +140,7 @@ impl Judge {
         }
         self.contacts.add_metrics(world.model(), &mut metrics);
         self.mechanisms.add_metrics(world, &mut metrics);
+        self.motors.add_metrics(&mut metrics);
         self.add_momentum_drift(&mut metrics);
         metrics
     }
@@ -166,9 +170,9 @@ fn optional(value: Option<f64>) -> Value {
 
 impl Observer for Judge {
     fn observe(&mut self, world: &World) -> Flow {
-        let contact = if world.state().steps > 0 { self.observe_contact(world) } else { (false, 0.0) };
+        let touched = world.state().steps > 0 && self.observe_contact(world);
         let flow = match &mut self.docking {
-            Some(docking) => docking.observe(world, contact, &mut self.events),
+            Some(docking) => docking.observe(world, touched, &mut self.events),
             None => Flow::Continue,
         };
         if let Some(host) = &mut self.host {
@@ -181,6 +185,7 @@ impl Observer for Judge {
             capture.observe(world, &mut self.events);
         }
         self.mechanisms.observe(world, &mut self.events);
+        self.motors.observe(world, &mut self.events);
         self.creep.observe(world);
         if world.state().steps.is_multiple_of(AUDIT_EVERY)
             && let Some(audit) = &mut self.audit

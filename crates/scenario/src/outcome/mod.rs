@@ -7,9 +7,11 @@ mod creep;
 mod docking;
 mod energy;
 mod expect;
+mod interface;
 mod judge;
 mod keep_out;
 mod mechanisms;
+mod motors;
 
 pub(crate) use docking::calc_base_motion;
 pub use expect::{Verdict, check_expectations};

@@ -27,6 +27,8 @@ pub use line::{LineEffect, LineLaw};
 pub use memory::{MemorySlot, memory_layout};
 pub use series::Series;
 
+pub(crate) use series::Shaft;
+
 pub(crate) use body::{Parts, add_impulses, calc_carried, calc_carried_linear, drift_to_midpoint, particles};
 pub(crate) use line::{Lines, accept, next_switch};
 pub(crate) use memory::{calc_relative, is_blank, rest_parts, set_relative};
@@ -165,9 +167,9 @@ pub(crate) struct Acting<'a> {
     pub since: Option<f64>,
 }
 
-impl Acting<'_> {
+impl<'a> Acting<'a> {
     /// Memory of an effect.
-    pub fn memory(&self, index: usize) -> &[f64] {
+    pub fn memory(&self, index: usize) -> &'a [f64] {
         &self.state.effects[self.model.effects.memory(index)]
     }
 }
