@@ -11,8 +11,8 @@ use std::process::{Command, Stdio};
 /// Argument of the child.
 pub const CHILD: &str = "--count";
 
-/// Name of the function that is measured, as callgrind matches it.
-const MEASURED: &str = "*measured_block*";
+/// Name of the function that is measured, as callgrind demangles it.
+const MEASURED: &str = "instructions::callgrind::measured_block";
 
 /// Runs work inside the collected function.
 #[inline(never)]

@@ -75,13 +75,19 @@ fn detection() {
     for name in PAIRS {
         let mut query = pairs::pair(name);
         case(&format!("detection, {name}"), CALLS, || {
-            (0..CALLS as u32).for_each(|call| drop(black_box(query.detect_drifting(call))));
+            for call in 0..CALLS as u32 {
+                black_box(query.detect_drifting(call));
+            }
         });
     }
     let mut job = mission("peer-grasp", &[]);
     run_to(&mut job, SETTLED);
     let mut query = pairs::grasp(&job.world);
-    case("detection, grasp", CALLS, || (0..CALLS).for_each(|_| drop(black_box(query.detect()))));
+    case("detection, grasp", CALLS, || {
+        for _ in 0..CALLS {
+            black_box(query.detect());
+        }
+    });
 }
 
 fn diagnosis() {
