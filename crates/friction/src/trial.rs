@@ -95,8 +95,11 @@ impl Slope {
     /// As a matrix in the plane normal to `n`.
     #[inline]
     pub fn calc_matrix(&self, n: &Vector3<f64>) -> Matrix3<f64> {
-        let d = &self.direction;
-        self.across * (Matrix3::identity() - n * n.transpose()) + (self.along - self.across) * (d * d.transpose())
+        let (d, even) = (&self.direction, self.across * (Matrix3::identity() - n * n.transpose()));
+        if *d == Vector3::zeros() {
+            return even;
+        }
+        even + (self.along - self.across) * (d * d.transpose())
     }
 }
 

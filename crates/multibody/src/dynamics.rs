@@ -113,17 +113,35 @@ impl Dynamics {
         for row in m.chunks_mut(stride).take(n) {
             row[..n].fill(0.0);
         }
+        self.add_mass_matrix(tree, kin, extra, m, stride);
+        for k in 1..n {
+            for l in 0..k {
+                m[k * stride + l] = m[l * stride + k];
+            }
+        }
+    }
+
+    /// The same, added to the upper triangle alone, diagonal included; the rest of the square is left as it is.
+    pub fn add_mass_matrix(
+        &mut self,
+        tree: &Tree,
+        kin: &Kinematics,
+        extra: &[SpatialMatrix],
+        m: &mut [f64],
+        stride: usize,
+    ) {
         if extra.is_empty() {
             self.add_rigid(tree, kin, m, (stride, 6));
-            write_base_block(&SpatialMatrix::from(&self.locked[0]), m, stride);
+            add_base_block(&SpatialMatrix::from(&self.locked[0]), m, stride);
         } else {
             self.add_stiffened(tree, kin, extra, m, stride);
+            add_base_block(&self.composite[0], m, stride);
         }
         add_armatures(tree, m, (stride, 6));
     }
 
-    /// Mass matrix over the joint coordinates alone, of a vehicle whose base is held: row-major, added to the square of side `stride` ≥ nv that
-    /// begins at `m[0]`.
+    /// Mass matrix over the joint coordinates alone, of a vehicle whose base is held: row-major, added to the upper triangle of the square
+    /// of side `stride` ≥ nv that begins at `m[0]`.
     pub fn add_joint_mass_matrix(&mut self, tree: &Tree, kin: &Kinematics, m: &mut [f64], stride: usize) {
         self.add_rigid(tree, kin, m, (stride, 0));
         add_armatures(tree, m, (stride, 0));
@@ -156,10 +174,10 @@ impl Dynamics {
             self.add_joint_rows(tree, kin, j, m, (stride, 6));
             self.composite[tree.bodies[j + 1].parent] += composite;
         }
-        write_base_block(&self.composite[0], m, stride);
     }
 
-    /// Rows and columns of a joint, whose unit gains take the wrenches `force` of all that hangs on it.
+    /// What a joint shares with itself and with all that moves it, when its unit gains take the wrenches `force` of all that hangs on it: its
+    /// entries of the upper triangle.
     fn add_joint_rows(
         &mut self,
         tree: &Tree,
@@ -171,24 +189,25 @@ impl Dynamics {
         let joint = &tree.joints[j];
         for k in 0..joint.width {
             let (row, force) = (first + joint.v_index + k, self.force[k]);
-            for l in 0..joint.width {
-                m[row * stride + first + joint.v_index + l] += kin.screws[joint.column + l].dot(&force);
+            for l in k..joint.width {
+                m[row * stride + row - k + l] += kin.screws[joint.column + l].dot(&force);
             }
             let mut at = tree.bodies[j + 1].parent;
             while at != 0 {
                 let above = &tree.joints[at - 1];
                 for l in 0..above.width {
                     let (column, value) = (first + above.v_index + l, kin.screws[above.column + l].dot(&force));
+                    let entry = &mut m[row.min(column) * stride + row.max(column)];
                     // A mimic joint below its leader meets its own coordinate: both halves land on the diagonal.
-                    m[row * stride + column] += value;
-                    m[column * stride + row] += value;
+                    *entry += value;
+                    *entry += if row == column { value } else { 0.0 };
                 }
                 at = tree.bodies[at].parent;
             }
-            for l in 0..first / 2 {
-                for (column, value) in [(l, force.moment[l]), (3 + l, force.force[l])] {
-                    m[row * stride + column] += value;
-                    m[column * stride + row] += value;
+            if first == 6 {
+                let base = [force.moment.x, force.moment.y, force.moment.z, force.force.x, force.force.y, force.force.z];
+                for (above, value) in m.chunks_mut(stride).zip(base) {
+                    above[row] += value;
                 }
             }
         }
@@ -203,13 +222,14 @@ fn add_armatures(tree: &Tree, m: &mut [f64], (stride, first): (usize, usize)) {
     }
 }
 
-fn write_base_block(total: &SpatialMatrix, m: &mut [f64], stride: usize) {
+fn add_base_block(total: &SpatialMatrix, m: &mut [f64], stride: usize) {
     for i in 0..3 {
+        for j in i..3 {
+            m[i * stride + j] += total.ma[(i, j)];
+            m[(3 + i) * stride + 3 + j] += total.fl[(i, j)];
+        }
         for j in 0..3 {
-            m[i * stride + j] = total.ma[(i, j)];
-            m[i * stride + 3 + j] = total.ml[(i, j)];
-            m[(3 + i) * stride + j] = total.fa[(i, j)];
-            m[(3 + i) * stride + 3 + j] = total.fl[(i, j)];
+            m[i * stride + 3 + j] += total.ml[(i, j)];
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::model::{Model, PairLaw};
 use crate::state::{ContactMemory, State};
 use crate::workspace::Workspace;
 use friction::{Brush, Friction, Trial, carry, mean_of};
-use spatial::{Frame, Mat3, Vec3};
+use spatial::{Frame, Mat3, Twist, Vec3};
 
 /// One touching point.
 #[derive(Clone, Copy, Debug)]
@@ -191,18 +191,17 @@ impl Touch {
         let is_free = brush.by_deflection.direction == Vec3::zeros() && brush.by_slip.direction == Vec3::zeros();
         !is_free && brush.force.dot(&before) < 0.0
     }
-
-    /// Lever arms do not matter here: the relative velocity of the two material points.
-    fn relative_velocity(ws: &Workspace, model: &Model, body_a: usize, body_b: usize, point: &Vec3) -> Vec3 {
-        ws.vel_at(model, body_b, point) - ws.vel_at(model, body_a, point)
-    }
 }
 
 /// (ω_B − ω_A) × ½ (v_A + v_B) at the contact point, m/s².
 pub(crate) fn calc_carried(model: &Model, ws: &Workspace, touch: &Touch) -> Vec3 {
-    let spin = |body: usize| model.owners.get(body).map_or(Vec3::zeros(), |&(v, b)| ws.kin[v].vel[b].ang);
-    let at = |body: usize| ws.vel_at(model, body, &touch.point);
-    (spin(touch.body_b) - spin(touch.body_a)).cross(&(0.5 * (at(touch.body_a) + at(touch.body_b))))
+    let [a, b] = [touch.body_a, touch.body_b].map(|body| ws.twist_at(model, body, &touch.point));
+    carried_of(&a, &b)
+}
+
+/// The same of the two bodies' twists about the point.
+fn carried_of(a: &Twist, b: &Twist) -> Vec3 {
+    (b.ang - a.ang).cross(&(0.5 * (a.lin + b.lin)))
 }
 
 /// Speculative distance: a point counts if it may touch within the step. It moves at most this much.
@@ -235,40 +234,39 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
         let contact = ws.points[i];
         let (body_a, body_b) = model.pair_bodies(contact.pair as usize);
         let point = 0.5 * (contact.point_a_w + contact.point_b_w);
-        let u = Touch::relative_velocity(ws, model, body_a, body_b, &point);
+        let (twist_a, twist_b) = (ws.twist_at(model, body_a, &point), ws.twist_at(model, body_b, &point));
+        let u = twist_b.lin - twist_a.lin;
         if contact.gap + 2.0 * h * contact.normal_w.dot(&u).min(0.0) >= 0.0 {
             continue;
         }
-        ws.touches.push(Touch {
+        let (frame_a, frame_b) = (&ws.frames[body_a], &ws.frames[body_b]);
+        let law = &model.laws[contact.pair as usize];
+        let mut touch = Touch {
             pair: contact.pair,
             feature: contact.feature,
             body_a,
             body_b,
             point,
-            local_a: ws.frames[body_a].inverse_point(&point),
-            local_b: ws.frames[body_b].inverse_point(&point),
-            rot_a: ws.frames[body_a].rot,
-            rot_b: ws.frames[body_b].rot,
+            local_a: frame_a.inverse_point(&point),
+            local_b: frame_b.inverse_point(&point),
+            rot_a: frame_a.rot,
+            rot_b: frame_b.rot,
             normal: contact.normal_w,
             gap: contact.gap,
             weight: contact.weight,
             s: Vec3::zeros(),
-            rest: 0.0,
+            rest: law.friction.as_ref().map_or(1.0, Friction::initial_rest),
             grain: Vec3::zeros(),
             turn: Vec3::zeros(),
             u,
-            carried: Vec3::zeros(),
+            carried: carried_of(&twist_a, &twist_b) * h,
             place: Place::default(),
             out: Outcome::default(),
-        });
-    }
-    for i in 0..ws.touches.len() {
-        ws.touches[i].carried = calc_carried(model, ws, &ws.touches[i]) * h;
-        let law = &model.laws[ws.touches[i].pair as usize];
-        ws.touches[i].rest = law.friction.as_ref().map_or(1.0, Friction::initial_rest);
+        };
         if let Some(grain) = &law.grain {
-            ws.touches[i].grain = grain.calc_direction(&ws.touches[i]);
+            touch.grain = grain.calc_direction(&touch);
         }
+        ws.touches.push(touch);
     }
     let turned = Turned { from: &ws.frames_start, to: &ws.frames };
     remember(&model.scene, &state.bristles, &mut ws.touches, &turned);

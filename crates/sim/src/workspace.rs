@@ -155,10 +155,10 @@ impl Workspace {
 
     /// Twist of a global body about the point at `point` (W), W axes; zero for the world.
     #[inline]
-    pub fn vel_at(&self, model: &Model, body: usize, point: &Vec3) -> Vec3 {
-        let Some(&(vehicle, local)) = model.owners.get(body) else { return Vec3::zeros() };
+    pub fn twist_at(&self, model: &Model, body: usize, point: &Vec3) -> Twist {
+        let Some(&(vehicle, local)) = model.owners.get(body) else { return Twist::default() };
         let kin = &self.kin[vehicle];
-        kin.vel[local].at(&(point - kin.anchor))
+        kin.vel[local].about(&(point - kin.anchor))
     }
 }
 
