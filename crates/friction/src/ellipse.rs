@@ -13,7 +13,7 @@
 //! The radial return shortens the deflection along itself instead, s = s⁺/√((s⁺₁/a₁)² + (s⁺₂/a₂)²): in steady sliding the
 //! force then opposes the velocity, at the level of that direction. Which of the two holds is [`crate::Return`].
 
-use crate::trial::Return;
+use crate::trial::{Return, is_zero};
 use nalgebra::Vector3;
 
 /// Semi-axes along and across the grain, m.
@@ -48,7 +48,7 @@ impl Ellipse {
 
     #[inline]
     pub fn is_round(&self) -> bool {
-        self.along == self.across || self.grain == Vector3::zeros()
+        self.along == self.across || is_zero(&self.grain)
     }
 
     /// What the set holds of a deflection, by its way of return.

@@ -23,12 +23,29 @@ pub struct Dynamics {
     locked: Vec<Inertia>,
     pub(crate) force: Vec<Wrench>,
     pub(crate) articulated: crate::aba::ArticulatedScratch,
+    paths: Vec<Moves>,
+    /// Body by body where its path begins, and the end.
+    path_starts: Vec<usize>,
+}
+
+/// A screw that moves a body: its place in [`Kinematics::screws`], and the coordinate that it belongs to.
+#[derive(Clone, Copy, Debug)]
+pub struct Moves {
+    /// Index into the screws.
+    pub column: u32,
+    /// Index into v.
+    pub coordinate: u32,
 }
 
 impl Dynamics {
     /// Room for one vehicle.
     pub fn new(tree: &Tree) -> Self {
         let n = tree.bodies.len();
+        let (mut paths, mut path_starts) = (Vec::new(), vec![0]);
+        for body in 0..n {
+            add_path(tree, body, &mut paths);
+            path_starts.push(paths.len());
+        }
         Self {
             acc: vec![Twist::default(); n],
             wrench: vec![Wrench::default(); n],
@@ -36,7 +53,15 @@ impl Dynamics {
             locked: vec![Inertia::default(); n],
             force: vec![Wrench::default(); 6],
             articulated: crate::aba::ArticulatedScratch::new(tree),
+            paths,
+            path_starts,
         }
+    }
+
+    /// The screws that move a body, from the tip inwards.
+    #[inline]
+    pub fn path(&self, body: usize) -> &[Moves] {
+        &self.paths[self.path_starts[body]..self.path_starts[body + 1]]
     }
 
     /// Inverse dynamics: joint efforts `tau` and the base wrench (about the anchor, W axes) that produce the given
@@ -179,7 +204,7 @@ impl Dynamics {
     /// What a joint shares with itself and with all that moves it, when its unit gains take the wrenches `force` of all that hangs on it: its
     /// entries of the upper triangle.
     fn add_joint_rows(
-        &mut self,
+        &self,
         tree: &Tree,
         kin: &Kinematics,
         j: usize,
@@ -192,25 +217,30 @@ impl Dynamics {
             for l in k..joint.width {
                 m[row * stride + row - k + l] += kin.screws[joint.column + l].dot(&force);
             }
-            let mut at = tree.bodies[j + 1].parent;
-            while at != 0 {
-                let above = &tree.joints[at - 1];
-                for l in 0..above.width {
-                    let (column, value) = (first + above.v_index + l, kin.screws[above.column + l].dot(&force));
-                    let entry = &mut m[row.min(column) * stride + row.max(column)];
-                    // A mimic joint below its leader meets its own coordinate: both halves land on the diagonal.
-                    *entry += value;
-                    *entry += if row == column { value } else { 0.0 };
-                }
-                at = tree.bodies[at].parent;
+            for above in self.path(tree.bodies[j + 1].parent) {
+                let value = kin.screws[above.column as usize].dot(&force);
+                let column = first + above.coordinate as usize;
+                let entry = &mut m[row.min(column) * stride + row.max(column)];
+                *entry += value;
+                // A mimic joint below its leader meets its own coordinate: both halves land on the diagonal.
+                *entry += if row == column { value } else { 0.0 };
             }
             if first == 6 {
                 let base = [force.moment.x, force.moment.y, force.moment.z, force.force.x, force.force.y, force.force.z];
-                for (above, value) in m.chunks_mut(stride).zip(base) {
+                for (above, value) in m.chunks_exact_mut(stride).zip(base) {
                     above[row] += value;
                 }
             }
         }
+    }
+}
+
+fn add_path(tree: &Tree, mut body: usize, path: &mut Vec<Moves>) {
+    while body != 0 {
+        let joint = &tree.joints[body - 1];
+        let moves = |k: usize| Moves { column: (joint.column + k) as u32, coordinate: (joint.v_index + k) as u32 };
+        path.extend((0..joint.width).map(moves));
+        body = tree.bodies[body].parent;
     }
 }
 

@@ -18,6 +18,7 @@ use crate::dead_weight;
 use crate::model::{Model, PairLaw};
 use crate::state::{ContactMemory, State};
 use crate::workspace::Workspace;
+use contact::NormalForce;
 use friction::{Brush, Friction, Trial, carry, mean_of};
 use spatial::{Frame, Mat3, Twist, Vec3};
 
@@ -97,31 +98,35 @@ pub(crate) struct Outcome {
 /// Steepest secant that [`Touch::calc_pressing`] believes.
 const SHORTEST_WAY: f64 = -9.0;
 
+/// Where the laws were asked and what they said of slopes: what the next line is drawn from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Answer {
+    u_new: Vec3,
+    normal: NormalForce,
+    /// Trial deflection, slip and what the brush answered.
+    friction: Option<(Vec3, Vec3, Brush)>,
+    /// Whether this was the first pass of the step in which the slip force had turned.
+    is_first_turn: bool,
+}
+
 impl Touch {
-    /// Evaluates the law at the predicted relative velocity `u_new`, and draws the line for the next solve.
-    ///
-    /// Newton's tangent in slip (turning only) overshoots a point that is about to stop, and would throw it to and fro
-    /// for ever. Where the slip force has turned, the next line is that of the bristle without a bound, which leads to
-    /// the neighbourhood of rest; where that did not settle it, the secant through the unloaded bristle: friction is
-    /// the slope of a convex potential, which the secant's parabola bounds from above, so that every pass descends.
-    pub fn eval(&mut self, law: &PairLaw, u_new: &Vec3, h: f64) -> Outcome {
+    /// Asks the law at the predicted relative velocity `u_new`; the outcome's line is not drawn yet.
+    pub fn eval(&self, law: &PairLaw, u_new: &Vec3) -> (Outcome, Answer) {
         let law = &*law.weighted(self.weight);
         let (n, at) = (self.normal, self.place);
         let rate = (1.0 - at.theta) * self.u + at.theta * u_new;
         let (u_n, rate_n) = (n.dot(u_new), n.dot(&rate));
         let gap = at.gap_base + at.beta * u_n;
         let (normal, adhesion) = (law.normal.eval(gap, rate_n), law.normal.adhesion_at(gap));
-        let nn = n * n.transpose();
         let mut out = Outcome {
             law: normal.force * n,
             normal_force: normal.force,
             bears: normal.force + adhesion > 0.0,
             pressing: [self.calc_pressing(normal.force), self.out.pressing[0]],
             passes: self.out.passes + 1,
-            g: -h * (at.beta * normal.d_gap + at.theta * normal.d_rate) * nn,
             ..Outcome::default()
         };
-        let mut excess = Vec3::zeros();
+        let mut answer = Answer { u_new: *u_new, normal, friction: None, is_first_turn: false };
         if let Some(friction) = &law.friction {
             let (s_trial, slip) = (at.s_base + at.beta * (u_new - u_n * n), rate - rate_n * n);
             let brush = friction.eval(&Trial {
@@ -135,17 +140,36 @@ impl Touch {
             });
             out.law += brush.force;
             (out.s, out.rest, out.sticks) = (brush.s, brush.rest, brush.sticks);
-            out.turns = self.out.turns + u8::from(self.has_turned(&brush));
-            out.g += h * self.calc_friction_slope(&brush, friction, &out);
-            if out.turns > self.out.turns && out.turns == 1 {
+            let has_turned = self.has_turned(&brush);
+            out.turns = self.out.turns + u8::from(has_turned);
+            answer.friction = Some((s_trial, slip, brush));
+            answer.is_first_turn = has_turned && out.turns == 1;
+        }
+        out.force = out.law;
+        (out, answer)
+    }
+
+    /// Draws the line for the next solve through what the law answered, `self.out`.
+    ///
+    /// Newton's tangent in slip (turning only) overshoots a point that is about to stop, and would throw it to and fro
+    /// for ever. Where the slip force has turned, the next line is that of the bristle without a bound, which leads to
+    /// the neighbourhood of rest; where that did not settle it, the secant through the unloaded bristle: friction is
+    /// the slope of a convex potential, which the secant's parabola bounds from above, so that every pass descends.
+    pub fn draw_line(&mut self, law: &PairLaw, answer: &Answer, h: f64) {
+        let law = &*law.weighted(self.weight);
+        let (n, at, normal) = (self.normal, self.place, answer.normal);
+        let mut g = -h * (at.beta * normal.d_gap + at.theta * normal.d_rate) * (n * n.transpose());
+        let mut excess = Vec3::zeros();
+        if let (Some(friction), Some((s_trial, slip, brush))) = (&law.friction, &answer.friction) {
+            g += h * self.calc_friction_slope(brush, friction, answer.is_first_turn);
+            if answer.is_first_turn {
                 let (stiffness, damping) = friction.spring();
                 let spring = stiffness + damping / at.elapsed;
                 excess = damping / at.elapsed * self.s - spring * s_trial - friction.viscous() * slip - brush.force;
             }
         }
-        out.line = out.law + excess + out.g * (u_new - self.u - self.carried) / h;
-        out.force = out.law;
-        out
+        self.out.line = self.out.law + excess + g * (answer.u_new - self.u - self.carried) / h;
+        self.out.g = g;
     }
 
     /// Normal force that bounds the friction in the next line, when the last one led to `normal`.
@@ -167,14 +191,14 @@ impl Touch {
     ///
     /// A level that falls with speed counts as constant: its slope would take definiteness from the matrix, and the next
     /// pass sees the new level.
-    fn calc_friction_slope(&self, brush: &Brush, friction: &Friction, out: &Outcome) -> Mat3 {
+    fn calc_friction_slope(&self, brush: &Brush, friction: &Friction, is_first_turn: bool) -> Mat3 {
         let (n, at, slip, mut by_s) = (&self.normal, self.place, brush.by_slip, brush.by_deflection);
-        let is_free = by_s.direction == Vec3::zeros() && slip.direction == Vec3::zeros();
+        let is_free = by_s.is_even() && slip.is_even();
         let mut by_slip = friction::Slope { along: slip.along.max(0.0), ..slip };
-        if out.turns > self.out.turns && out.turns == 1 {
+        if is_first_turn {
             let (stiffness, damping) = friction.spring();
             by_s = friction::Slope::even(stiffness + damping / at.elapsed);
-        } else if out.turns > 0 && !is_free {
+        } else if self.out.turns > 0 && !is_free {
             by_s = friction::Slope::even(by_s.across);
             by_slip = friction::Slope::even(slip.across);
         }
@@ -188,7 +212,7 @@ impl Touch {
     /// Whether a force on its bound has turned by more than 90° since the last pass.
     fn has_turned(&self, brush: &Brush) -> bool {
         let before = self.out.law - self.normal * self.normal.dot(&self.out.law);
-        let is_free = brush.by_deflection.direction == Vec3::zeros() && brush.by_slip.direction == Vec3::zeros();
+        let is_free = brush.by_deflection.is_even() && brush.by_slip.is_even();
         !is_free && brush.force.dot(&before) < 0.0
     }
 }
@@ -338,11 +362,17 @@ pub(crate) struct Turned<'a> {
 }
 
 impl Turned<'_> {
+    /// Whether a body has not turned.
+    #[inline]
+    fn is_still(&self, body: usize) -> bool {
+        self.from[body].rot == self.to[body].rot
+    }
+
     /// A vector in W axes, as fixed in a body.
     #[inline]
     fn with(&self, body: usize, v: &Vec3) -> Vec3 {
         let (from, to) = (&self.from[body].rot, &self.to[body].rot);
-        if from == to { *v } else { to * from.tr_mul(v) }
+        if self.is_still(body) { *v } else { to * from.tr_mul(v) }
     }
 
     /// The mean of what a unit vector becomes with both bodies.
@@ -354,6 +384,9 @@ impl Turned<'_> {
     /// A deflection of the plane normal to `n`, carried with both bodies into the plane normal to `to`.
     #[inline]
     pub fn deflection(&self, (a, b): (usize, usize), s: &Vec3, n: &Vec3, to: &Vec3) -> Vec3 {
+        if self.is_still(a) && self.is_still(b) {
+            return carry(s, n, to);
+        }
         let with = |v: &Vec3| (self.with(a, v), self.with(b, v));
         carry_with_both(with(s), with(n), to)
     }

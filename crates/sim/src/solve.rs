@@ -12,8 +12,8 @@ use crate::mechanism::{self, Coupling};
 use crate::model::Model;
 use crate::pivots;
 use crate::workspace::Workspace;
-use multibody::{Kinematics, Tree};
 use spatial::{Mat3, SpatialMatrix, Twist, Vec3, Wrench};
+use std::cmp::Ordering;
 
 /// Row of a body's freedom that its base's guide holds.
 const HELD: usize = usize::MAX;
@@ -182,34 +182,84 @@ fn add_vehicle(model: &Model, ws: &mut Workspace, i: usize, (h, is_stiffened): (
     }
 }
 
-/// Subtracts JₐᵀC J_b and its transpose.
+/// Subtracts JₐᵀC J_b and its transpose, of which the upper triangle.
 fn add_cross(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: &SpatialMatrix) {
+    match model.owners[a].0.cmp(&model.owners[b].0) {
+        // A vehicle's rows stand before those of the vehicles behind it.
+        Ordering::Less => add_between(model, ws, [a, b], coupling),
+        Ordering::Greater => add_between(model, ws, [b, a], &coupling.transpose()),
+        Ordering::Equal => add_within(model, ws, [a, b], coupling),
+    }
+}
+
+/// The bodies are of two vehicles, A's the first.
+fn add_between(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: &SpatialMatrix) {
     let ((va, la), (vb, lb)) = (model.owners[a], model.owners[b]);
     let islands = &mut ws.islands;
     let group = islands.group[va];
     let (at, stride) = (islands.start[group], padded(islands.size[group]));
     let (rows_a, rows_b, matrix) = (&islands.rows[va], &islands.rows[vb], &mut islands.matrix[at..]);
-    let mut subtract = |row: usize, column: usize, value: f64| {
-        if row != HELD && column != HELD {
-            let entry = &mut matrix[row.min(column) * stride + row.max(column)];
-            *entry -= value;
-            // Within one vehicle the transposed half lands here, too.
-            *entry -= if row == column { value } else { 0.0 };
+    let (path_b, screws_b) = (ws.dynamics[vb].path(lb), &ws.kin[vb].screws);
+    let mut subtract = |row: usize, seen: &Wrench| {
+        let own = &mut matrix[row * stride..][..stride];
+        subtract_base(own, rows_b, seen);
+        for moves in path_b {
+            own[rows_b[6 + moves.coordinate as usize]] -= screws_b[moves.column as usize].dot(seen);
         }
     };
-    let (tree_a, tree_b) = (&model.vehicles[va].tree, &model.vehicles[vb].tree);
     for (k, row) in rows_a.iter().enumerate().take(6).filter(|(_, r)| **r != HELD) {
-        each_of(&row_of(coupling, k), |l, value| subtract(*row, rows_b[l], value));
+        subtract(*row, &row_of(coupling, k));
     }
-    for_path(tree_a, &ws.kin[va], la, |k, screw| {
-        let row = coupling.tr_mul(screw);
-        each_of(&row, |l, value| subtract(rows_a[k], rows_b[l], value));
-    });
-    for_path(tree_b, &ws.kin[vb], lb, |l, screw| {
-        let column = coupling.mul(screw);
-        each_of(&column, |k, value| subtract(rows_a[k], rows_b[l], value));
-        for_path(tree_a, &ws.kin[va], la, |k, screw| subtract(rows_a[k], rows_b[l], screw.dot(&column)));
-    });
+    for moves in ws.dynamics[va].path(la) {
+        let screw = &ws.kin[va].screws[moves.column as usize];
+        subtract(rows_a[6 + moves.coordinate as usize], &coupling.tr_mul(screw));
+    }
+}
+
+/// Subtracts the six numbers of a wrench from a row, in the columns of a base's freedoms.
+#[inline]
+fn subtract_base(row: &mut [f64], columns: &[usize], seen: &Wrench) {
+    let (m, f) = (&seen.moment, &seen.force);
+    let numbers = [m.x, m.y, m.z, f.x, f.y, f.z];
+    let first = columns[0];
+    // Of a base that is free the columns follow on each other.
+    if first != HELD && columns[5] == first + 5 {
+        row[first..first + 6].iter_mut().zip(numbers).for_each(|(x, number)| *x -= number);
+        return;
+    }
+    for (column, number) in columns.iter().zip(numbers).filter(|(c, _)| **c != HELD) {
+        row[*column] -= number;
+    }
+}
+
+/// Both bodies are of one vehicle: both halves may land on one entry.
+fn add_within(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: &SpatialMatrix) {
+    let ((vehicle, la), (_, lb)) = (model.owners[a], model.owners[b]);
+    let islands = &mut ws.islands;
+    let group = islands.group[vehicle];
+    let (at, stride) = (islands.start[group], padded(islands.size[group]));
+    let (rows, matrix) = (&islands.rows[vehicle], &mut islands.matrix[at..]);
+    let (dynamics, screws) = (&ws.dynamics[vehicle], &ws.kin[vehicle].screws);
+    let mut subtract = |row: usize, seen: &Wrench| {
+        let mut entry = |column: usize, value: f64| {
+            let entry = &mut matrix[row.min(column) * stride + row.max(column)];
+            *entry -= value;
+            *entry -= if row == column { value } else { 0.0 };
+        };
+        let (m, f) = (&seen.moment, &seen.force);
+        for (column, value) in rows.iter().zip([m.x, m.y, m.z, f.x, f.y, f.z]).filter(|(c, _)| **c != HELD) {
+            entry(*column, value);
+        }
+        for moves in dynamics.path(lb) {
+            entry(rows[6 + moves.coordinate as usize], screws[moves.column as usize].dot(seen));
+        }
+    };
+    for (k, row) in rows.iter().enumerate().take(6).filter(|(_, r)| **r != HELD) {
+        subtract(*row, &row_of(coupling, k));
+    }
+    for moves in dynamics.path(la) {
+        subtract(rows[6 + moves.coordinate as usize], &coupling.tr_mul(&screws[moves.column as usize]));
+    }
 }
 
 /// What acts on the base's freedom `k` for a unit of each of the other's.
@@ -219,27 +269,6 @@ fn row_of(matrix: &SpatialMatrix, k: usize) -> Wrench {
         Wrench::new(row(&matrix.ma), row(&matrix.ml))
     } else {
         Wrench::new(row(&matrix.fa), row(&matrix.fl))
-    }
-}
-
-/// The six numbers of a wrench, with their places: moment first.
-#[inline]
-fn each_of(wrench: &Wrench, mut visit: impl FnMut(usize, f64)) {
-    for k in 0..3 {
-        visit(k, wrench.moment[k]);
-        visit(3 + k, wrench.force[k]);
-    }
-}
-
-/// Visits the joint freedoms that move a body, with their screws, from the tip inwards.
-fn for_path(tree: &Tree, kin: &Kinematics, body: usize, mut visit: impl FnMut(usize, &Twist)) {
-    let mut at = body;
-    while at != 0 {
-        let joint = &tree.joints[at - 1];
-        for k in 0..joint.width {
-            visit(6 + joint.v_index + k, &kin.screws[joint.column + k]);
-        }
-        at = tree.bodies[at].parent;
     }
 }
 
@@ -387,21 +416,17 @@ fn subtract_rows<const W: usize>(above: &[f64], row: &mut [f64], k: usize, at: u
 /// x with UᵀU x = b, in place.
 fn back_substitute(u: &[f64], b: &mut [f64]) {
     let (n, stride) = (b.len(), padded(b.len()));
-    if n == 0 {
-        return;
-    }
-    for (k, row) in u.chunks_exact(stride).take(n).enumerate() {
+    for k in 0..n {
+        let row = &u[k * stride..][..n];
         let (known, rest) = b.split_at_mut(k + 1);
-        known[k] /= row[k];
-        for (b, u) in rest.iter_mut().zip(&row[k + 1..]) {
-            *b -= u * known[k];
-        }
+        let x = known[k] / row[k];
+        known[k] = x;
+        rest.iter_mut().zip(&row[k + 1..]).for_each(|(b, u)| *b -= u * x);
     }
-    for (k, row) in u.chunks_exact(stride).take(n).enumerate().rev() {
-        let mut value = b[k];
-        for (b, u) in b[k + 1..].iter().zip(&row[k + 1..]) {
-            value -= u * b;
-        }
-        b[k] = value / row[k];
+    for k in (0..n).rev() {
+        let row = &u[k * stride..][..n];
+        let (open, known) = b.split_at_mut(k + 1);
+        let value = known.iter().zip(&row[k + 1..]).fold(open[k], |value, (b, u)| value - u * b);
+        open[k] = value / row[k];
     }
 }

@@ -187,8 +187,9 @@ fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) 
         if is_stiff {
             touch.place = Place { gap_base: touch.gap, s_base: touch.s, beta: h, theta: 1.0, elapsed: h };
         }
-        let u = touch.u;
-        touch.out = touch.eval(law, &u, h);
+        let (out, answer) = touch.eval(law, &touch.u);
+        touch.out = out;
+        touch.draw_line(law, &answer, h);
         if scheme == Scheme::SemiImplicitEuler {
             touch.out.g = spatial::Mat3::zeros();
             touch.out.line = touch.out.law;
@@ -261,7 +262,7 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
         state.work.solves += 1;
         state.work.rate_evaluations += 1;
         let first_midpoint_pass = scheme == Scheme::ImplicitMidpoint && pass == 0;
-        converged = scheme == Scheme::SemiImplicitEuler || laws_hold(model, state, ws, h);
+        converged = scheme == Scheme::SemiImplicitEuler || laws_hold(model, state, ws, first_midpoint_pass);
         must_factor = !converged;
         if first_midpoint_pass {
             recalc_bias_at_midpoint(model, state, ws);
@@ -308,15 +309,18 @@ fn classical_gain(gain: &Twist, base: &Twist, h: f64) -> Twist {
     Twist::new(gain.ang, gain.lin + h * base.ang.cross(&base.lin))
 }
 
-/// Evaluates all laws at the solution; where a line missed, draws the next one. `true` if none did.
-fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
+/// Evaluates all laws at the solution; where a line missed, or another pass comes anyway, draws the next ones. `true` if
+/// none did.
+fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, goes_on: bool) -> bool {
+    let h = ws.step;
     let mut check = PairCheck::default();
+    ws.answers.clear();
     for i in 0..ws.touches.len() {
         let gain = relative_gain(model, ws, &ws.touches[i]);
         let touch = &mut ws.touches[i];
         let law = &model.laws[touch.pair as usize];
         let force = touch.out.line - touch.out.g * gain / h;
-        let next = touch.eval(law, &(touch.u + touch.carried + gain), h);
+        let (next, answer) = touch.eval(law, &(touch.u + touch.carried + gain));
         let mut miss = (next.law - force).norm();
         if let Some(friction) = law.friction.as_ref().filter(|_| next.pressing[0] != next.normal_force) {
             // A bound of friction that the normal force does not bear out is a miss as well.
@@ -324,19 +328,32 @@ fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
         }
         check.add(touch.pair, miss, next.law.norm());
         touch.out = Outcome { force, ..next };
+        ws.answers.push(answer);
     }
-    let mut joints_hold = true;
+    let joints_hold = joint_laws_hold(model, state, ws);
+    let pivots_hold = pivots::laws_hold(model, ws);
+    let hold = mechanism::laws_hold(model, ws) && pivots_hold && joints_hold && check.holds();
+    if goes_on || !hold {
+        for (touch, answer) in ws.touches.iter_mut().zip(&ws.answers) {
+            touch.draw_line(&model.laws[touch.pair as usize], answer, h);
+        }
+    }
+    hold
+}
+
+fn joint_laws_hold(model: &Model, state: &State, ws: &mut Workspace) -> bool {
+    let h = ws.step;
+    let mut hold = true;
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
         let (effort, slope) = ws.coordinate_lines[i];
         let v_new = state.v[i] + ws.v_gain[i];
         let on_line = effort - slope * ws.v_gain[i];
         let law = coordinate.eval(&ws.coordinate_points[i], v_new, &Acting { model, state, step: h, since: None });
-        joints_hold &= (law.effort - on_line).abs() <= LAW_TOLERANCE * law.effort.abs() + FORCE_FLOOR;
+        hold &= (law.effort - on_line).abs() <= LAW_TOLERANCE * law.effort.abs() + FORCE_FLOOR;
         ws.coordinate_forces[i] = crate::actuator::CoordinateForce { effort: on_line, ..law };
         ws.coordinate_lines[i] = (law.effort + law.slope * ws.v_gain[i], law.slope);
     }
-    let pivots_hold = pivots::laws_hold(model, ws);
-    mechanism::laws_hold(model, ws) && pivots_hold && joints_hold && check.holds()
+    hold
 }
 
 /// Compares lines with laws, pair by pair: a miss counts against the largest force of its own pair, so that a press

@@ -1,7 +1,7 @@
 //! Scratch of a step: sized once from the model, so that a step allocates nothing.
 
 use crate::actuator::{CoordinateForce, CoordinatePoint};
-use crate::contacts::Touch;
+use crate::contacts::{Answer, Touch};
 use crate::effect::calc_carried;
 use crate::model::{Base, Model, Vehicle};
 use crate::state::State;
@@ -26,6 +26,8 @@ pub(crate) struct Workspace {
     pub points: Vec<ContactPoint>,
     pub reach: Vec<f64>,
     pub touches: Vec<Touch>,
+    /// What the touches' laws answered last, in their order.
+    pub answers: Vec<Answer>,
     pub couplings: Vec<crate::mechanism::Coupling>,
     pub pivots: Vec<crate::pivots::PivotTouch>,
     /// Per body, about its vehicle's anchor: forces from outside, then what motion takes beyond them.
@@ -83,6 +85,7 @@ impl Workspace {
             points: Vec::new(),
             reach: vec![0.0; bodies],
             touches: Vec::new(),
+            answers: Vec::new(),
             couplings: Vec::with_capacity(model.mechanisms.len()),
             pivots: Vec::new(),
             external: vec![Wrench::default(); bodies],

@@ -183,6 +183,12 @@ impl SpatialMatrix {
         Wrench { moment: self.ma * v.ang + self.ml * v.lin, force: self.fa * v.ang + self.fl * v.lin }
     }
 
+    /// The transposed map.
+    pub fn transpose(&self) -> Self {
+        let Self { ma, ml, fa, fl } = self;
+        Self { ma: ma.transpose(), ml: fa.transpose(), fa: ml.transpose(), fl: fl.transpose() }
+    }
+
     /// Image of a twist under the transposed map.
     #[inline]
     pub fn tr_mul(&self, v: &Twist) -> Wrench {
