@@ -124,13 +124,13 @@ impl Dynamics {
         self.wrench[0]
     }
 
-    /// Mass matrix over (V_B, v), plus `extra` (per body, about the anchor; empty for none): row-major, the full square
+    /// Mass matrix over (V_B, v), plus `extra` (per body that has any, about the anchor; empty for none): row-major, the full square
     /// of side `stride` ≥ 6 + nv written from `m[0]`.
     pub fn calc_mass_matrix(
         &mut self,
         tree: &Tree,
         kin: &Kinematics,
-        extra: &[SpatialMatrix],
+        extra: &[Option<SpatialMatrix>],
         m: &mut [f64],
         stride: usize,
     ) {
@@ -151,7 +151,7 @@ impl Dynamics {
         &mut self,
         tree: &Tree,
         kin: &Kinematics,
-        extra: &[SpatialMatrix],
+        extra: &[Option<SpatialMatrix>],
         m: &mut [f64],
         stride: usize,
     ) {
@@ -186,10 +186,12 @@ impl Dynamics {
     }
 
     /// What stiffness adds to them is any symmetric matrix.
-    fn add_stiffened(&mut self, tree: &Tree, kin: &Kinematics, extra: &[SpatialMatrix], m: &mut [f64], stride: usize) {
+    fn add_stiffened(&mut self, tree: &Tree, kin: &Kinematics, extra: &[Option<SpatialMatrix>], m: &mut [f64], stride: usize) {
         for ((composite, inertia), extra) in self.composite.iter_mut().zip(&kin.inertia).zip(extra) {
             *composite = SpatialMatrix::from(inertia);
-            *composite += *extra;
+            if let Some(extra) = extra {
+                *composite += *extra;
+            }
         }
         for (j, joint) in tree.joints.iter().enumerate().rev() {
             let composite = self.composite[j + 1];

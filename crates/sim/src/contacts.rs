@@ -33,9 +33,10 @@ pub(crate) struct Touch {
     pub point: Vec3,
     pub local_a: Vec3,
     pub local_b: Vec3,
-    /// A's and B's axes in W at the place of detection.
+    /// A's and B's axes in W at the place of detection, and whether they are those of the step's start.
     pub rot_a: Mat3,
     pub rot_b: Mat3,
+    pub is_at_start: bool,
     /// From A to B.
     pub normal: Vec3,
     pub gap: f64,
@@ -99,7 +100,7 @@ pub(crate) struct Outcome {
 const SHORTEST_WAY: f64 = -9.0;
 
 /// Where the laws were asked and what they said of slopes: what the next line is drawn from.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Answer {
     u_new: Vec3,
     normal: NormalForce,
@@ -111,11 +112,11 @@ pub(crate) struct Answer {
 
 impl Touch {
     /// Asks the law at the predicted relative velocity `u_new`; the outcome's line is not drawn yet.
-    pub fn eval(&self, law: &PairLaw, u_new: &Vec3) -> (Outcome, Answer) {
+    pub fn eval(&mut self, law: &PairLaw, u_new: Vec3, answer: &mut Answer) {
         let law = &*law.weighted(self.weight);
         let (n, at) = (self.normal, self.place);
         let rate = (1.0 - at.theta) * self.u + at.theta * u_new;
-        let (u_n, rate_n) = (n.dot(u_new), n.dot(&rate));
+        let (u_n, rate_n) = (n.dot(&u_new), n.dot(&rate));
         let gap = at.gap_base + at.beta * u_n;
         let (normal, adhesion) = (law.normal.eval(gap, rate_n), law.normal.adhesion_at(gap));
         let mut out = Outcome {
@@ -126,7 +127,7 @@ impl Touch {
             passes: self.out.passes + 1,
             ..Outcome::default()
         };
-        let mut answer = Answer { u_new: *u_new, normal, friction: None, is_first_turn: false };
+        *answer = Answer { u_new, normal, friction: None, is_first_turn: false };
         if let Some(friction) = &law.friction {
             let (s_trial, slip) = (at.s_base + at.beta * (u_new - u_n * n), rate - rate_n * n);
             let brush = friction.eval(&Trial {
@@ -146,7 +147,7 @@ impl Touch {
             answer.is_first_turn = has_turned && out.turns == 1;
         }
         out.force = out.law;
-        (out, answer)
+        self.out = out;
     }
 
     /// Draws the line for the next solve through what the law answered, `self.out`.
@@ -275,6 +276,7 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
             local_b: frame_b.inverse_point(&point),
             rot_a: frame_a.rot,
             rot_b: frame_b.rot,
+            is_at_start: frame_a.rot == ws.frames_start[body_a].rot && frame_b.rot == ws.frames_start[body_b].rot,
             normal: contact.normal_w,
             gap: contact.gap,
             weight: contact.weight,
@@ -362,17 +364,11 @@ pub(crate) struct Turned<'a> {
 }
 
 impl Turned<'_> {
-    /// Whether a body has not turned.
-    #[inline]
-    fn is_still(&self, body: usize) -> bool {
-        self.from[body].rot == self.to[body].rot
-    }
-
     /// A vector in W axes, as fixed in a body.
     #[inline]
     fn with(&self, body: usize, v: &Vec3) -> Vec3 {
         let (from, to) = (&self.from[body].rot, &self.to[body].rot);
-        if self.is_still(body) { *v } else { to * from.tr_mul(v) }
+        if from == to { *v } else { to * from.tr_mul(v) }
     }
 
     /// The mean of what a unit vector becomes with both bodies.
@@ -384,9 +380,6 @@ impl Turned<'_> {
     /// A deflection of the plane normal to `n`, carried with both bodies into the plane normal to `to`.
     #[inline]
     pub fn deflection(&self, (a, b): (usize, usize), s: &Vec3, n: &Vec3, to: &Vec3) -> Vec3 {
-        if self.is_still(a) && self.is_still(b) {
-            return carry(s, n, to);
-        }
         let with = |v: &Vec3| (self.with(a, v), self.with(b, v));
         carry_with_both(with(s), with(n), to)
     }
@@ -400,12 +393,14 @@ fn carry_with_both((s_a, s_b): (Vec3, Vec3), (n_a, n_b): (Vec3, Vec3), to: &Vec3
 
 impl Touch {
     fn recall(&mut self, memory: &ContactMemory, turned: &Turned<'_>) {
-        let bodies = (self.body_a, self.body_b);
-        self.s = turned.deflection(bodies, &memory.s_w, &memory.normal_w, &self.normal);
-        self.rest = memory.rest;
-        if memory.turn_w != Vec3::zeros() {
-            self.turn = turned.deflection(bodies, &memory.turn_w, &memory.normal_w, &self.normal);
-        }
+        let carried = |s: &Vec3| {
+            if self.is_at_start {
+                return carry(s, &memory.normal_w, &self.normal);
+            }
+            turned.deflection((self.body_a, self.body_b), s, &memory.normal_w, &self.normal)
+        };
+        let turn = if memory.turn_w == Vec3::zeros() { self.turn } else { carried(&memory.turn_w) };
+        (self.s, self.rest, self.turn) = (carried(&memory.s_w), memory.rest, turn);
     }
 
     /// What is kept of the point when the bodies have moved on from the place of detection to frames `a` and `b`: the
@@ -439,9 +434,8 @@ pub(crate) fn commit_bristles(model: &Model, state: &mut State, ws: &mut Workspa
             let start = b0.point(&touch.local_b) - a0.point(&touch.local_a);
             // Detected at the start, the two points coincide there; detected at mid-step they may not, and what parts them
             // turns with the bodies: taken as it was, its normal part would enter the plane step by step.
-            let is_at_start = touch.rot_a == a0.rot && touch.rot_b == b0.rot;
             let with = |from: &Frame, to: &Frame| to.rot * from.rot.tr_mul(&start);
-            let turned = if is_at_start { start } else { mean_of(&with(a0, a1), &with(b0, b1)) };
+            let turned = if touch.is_at_start { start } else { mean_of(&with(a0, a1), &with(b0, b1)) };
             touch.remembered(&touch.s, &(now - turned), (a1, b1))
         } else {
             touch.remembered(&touch.out.s, &Vec3::zeros(), (a1, b1))

@@ -92,7 +92,7 @@ impl Islands {
 pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
     let is_stiffened = !ws.couplings.is_empty() || !ws.pivots.is_empty() || ws.touches.iter().any(answers);
     if is_stiffened {
-        ws.extra.fill(SpatialMatrix::default());
+        ws.extra.fill(None);
     }
     add_touches(model, ws);
     mechanism::add_stiffness(model, ws, h);
@@ -134,15 +134,15 @@ fn add_touches(model: &Model, ws: &mut Workspace) {
         match (arm(a), arm(b)) {
             (Some(r_a), Some(r_b)) => {
                 let [own_a, both, own_b] = SpatialMatrix::from_point_of_two(g, &r_a, &r_b);
-                extra[a] += own_a;
-                extra[b] += own_b;
+                *extra[a].get_or_insert_default() += own_a;
+                *extra[b].get_or_insert_default() += own_b;
                 match islands.cross.last_mut().filter(|(bodies, _)| *bodies == [a, b]) {
                     Some((_, sum)) => *sum += both,
                     None => islands.cross.push(([a, b], both)),
                 }
             }
-            (Some(r), None) => extra[a] += SpatialMatrix::from_point(g, &r),
-            (None, Some(r)) => extra[b] += SpatialMatrix::from_point(g, &r),
+            (Some(r), None) => *extra[a].get_or_insert_default() += SpatialMatrix::from_point(g, &r),
+            (None, Some(r)) => *extra[b].get_or_insert_default() += SpatialMatrix::from_point(g, &r),
             (None, None) => {}
         }
     }

@@ -11,7 +11,7 @@
 //! Derivation, costs and the traps: crate documentation.
 
 use crate::actuator::{ActuatorKind, CoordinatePoint, calc_thrust};
-use crate::contacts::{Outcome, Place, Touch, commit_bristles, find_touches};
+use crate::contacts::{Answer, Place, Touch, commit_bristles, find_touches};
 use crate::drive;
 use crate::effect::{self, Acting};
 use crate::mechanism;
@@ -65,8 +65,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
         _ => drift(model, state, ws, h),
     }
     drive::place(model, state, ws.end);
-    ws.update_positions(model, state);
-    place_centres(model, state, ws, scheme);
+    place_vehicles(model, state, ws, scheme);
     finish(model, state, ws);
     drive::add_step(model, state, ws);
     pivots::commit(ws);
@@ -74,28 +73,34 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     mechanism::commit(model, state, ws);
 }
 
-/// Shifts every base so that its vehicle's centre of mass moves by h p/m exactly, with the momentum that moves it.
+/// Kinematics and frames of the drifted state, every centre of mass in its place.
+fn place_vehicles(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        ws.update_screws(model, state, i);
+        if !vehicle.base.is_held() {
+            place_centre(model, state, ws, (i, scheme));
+        }
+        ws.update_frames(model, i);
+    }
+}
+
+/// Shifts a base so that its vehicle's centre of mass moves by h p/m exactly, with the momentum that moves it.
 ///
 /// The drift of the base origin is off by O(h²), and L − x × p turns that into spin: a body flying at 1 m/s and turning at
 /// 1 rad/s would be pushed aside by ½ mm/s, and its rotation would depend on the frame that one looks from.
-fn place_centres(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
-    for (i, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| !v.base.is_held()) {
-        let start = &ws.momentum_start[i];
-        let mean = match scheme {
-            Scheme::ImplicitMidpoint => 0.5 * (start + own_momentum(model, state, ws, i)),
-            _ => own_momentum(model, state, ws, i),
-        };
-        let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
-        let kin = &mut ws.kin[i];
-        let off = ws.centre_start[i] + mean * (ws.step / mass) - (kin.anchor + first_moment / mass);
-        let mask = vehicle.base.mask();
-        let shift = Vec3::from_fn(|k, _| if mask[3 + k] { off[k] } else { 0.0 });
-        state.bases[i].translation.vector += shift;
-        kin.anchor = state.bases[i].translation.vector;
-        for body in 0..vehicle.tree.bodies.len() {
-            ws.frames[vehicle.body0 + body] = kin.frame(body);
-        }
-    }
+fn place_centre(model: &Model, state: &mut State, ws: &mut Workspace, (i, scheme): (usize, Scheme)) {
+    let start = &ws.momentum_start[i];
+    let mean = match scheme {
+        Scheme::ImplicitMidpoint => 0.5 * (start + own_momentum(model, state, ws, i)),
+        _ => own_momentum(model, state, ws, i),
+    };
+    let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
+    let kin = &mut ws.kin[i];
+    let off = ws.centre_start[i] + mean * (ws.step / mass) - (kin.anchor + first_moment / mass);
+    let mask = model.vehicles[i].base.mask();
+    let shift = Vec3::from_fn(|k, _| if mask[3 + k] { off[k] } else { 0.0 });
+    state.bases[i].translation.vector += shift;
+    kin.anchor = state.bases[i].translation.vector;
 }
 
 /// Linear momentum of a vehicle's bodies, without the parts that effects put inside them.
@@ -179,6 +184,7 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
 fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) {
     let h = ws.step;
     mechanism::place(model, ws, scheme);
+    ws.answers.resize(ws.touches.len(), Answer::default());
     for i in 0..ws.touches.len() {
         let is_stiff = scheme == Scheme::ImplicitMidpoint && is_stiff(model, ws, i);
         let touch = &mut ws.touches[i];
@@ -187,9 +193,9 @@ fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) 
         if is_stiff {
             touch.place = Place { gap_base: touch.gap, s_base: touch.s, beta: h, theta: 1.0, elapsed: h };
         }
-        let (out, answer) = touch.eval(law, &touch.u);
-        touch.out = out;
-        touch.draw_line(law, &answer, h);
+        let answer = &mut ws.answers[i];
+        touch.eval(law, touch.u, answer);
+        touch.draw_line(law, answer, h);
         if scheme == Scheme::SemiImplicitEuler {
             touch.out.g = spatial::Mat3::zeros();
             touch.out.line = touch.out.law;
@@ -314,21 +320,20 @@ fn classical_gain(gain: &Twist, base: &Twist, h: f64) -> Twist {
 fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, goes_on: bool) -> bool {
     let h = ws.step;
     let mut check = PairCheck::default();
-    ws.answers.clear();
     for i in 0..ws.touches.len() {
         let gain = relative_gain(model, ws, &ws.touches[i]);
         let touch = &mut ws.touches[i];
         let law = &model.laws[touch.pair as usize];
         let force = touch.out.line - touch.out.g * gain / h;
-        let (next, answer) = touch.eval(law, &(touch.u + touch.carried + gain));
+        touch.eval(law, touch.u + touch.carried + gain, &mut ws.answers[i]);
+        let next = &touch.out;
         let mut miss = (next.law - force).norm();
         if let Some(friction) = law.friction.as_ref().filter(|_| next.pressing[0] != next.normal_force) {
             // A bound of friction that the normal force does not bear out is a miss as well.
             miss = miss.max(friction.highest_level() * (next.pressing[0] - next.normal_force).abs());
         }
         check.add(touch.pair, miss, next.law.norm());
-        touch.out = Outcome { force, ..next };
-        ws.answers.push(answer);
+        touch.out.force = force;
     }
     let joints_hold = joint_laws_hold(model, state, ws);
     let pivots_hold = pivots::laws_hold(model, ws);

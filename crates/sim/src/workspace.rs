@@ -34,7 +34,8 @@ pub(crate) struct Workspace {
     pub external: Vec<Wrench>,
     pub bias: Vec<Wrench>,
     pub contact: Vec<Wrench>,
-    pub extra: Vec<SpatialMatrix>,
+    /// What contacts and mechanisms add to the inertia of a body.
+    pub extra: Vec<Option<SpatialMatrix>>,
     /// Change of the bodies' twists in the step; the world's is the last and zero.
     pub dvel: Vec<Twist>,
     pub base_start: Vec<Twist>,
@@ -91,7 +92,7 @@ impl Workspace {
             external: vec![Wrench::default(); bodies],
             bias: vec![Wrench::default(); bodies],
             contact: vec![Wrench::default(); bodies],
-            extra: vec![SpatialMatrix::default(); bodies],
+            extra: vec![None; bodies],
             dvel: vec![Twist::default(); bodies],
             base_start: vec![Twist::default(); model.vehicles.len()],
             momentum_start: vec![Vec3::zeros(); model.vehicles.len()],
@@ -123,11 +124,24 @@ impl Workspace {
 
     /// Frames, screws and inertias at the state's poses.
     pub fn update_positions(&mut self, model: &Model, state: &State) {
-        for (i, vehicle) in model.vehicles.iter().enumerate() {
-            self.kin[i].update_positions(&vehicle.tree, &state.bases[i], &state.q[vehicle.q_range()]);
-            for body in 0..vehicle.tree.bodies.len() {
-                self.frames[vehicle.body0 + body] = self.kin[i].frame(body);
-            }
+        for i in 0..model.vehicles.len() {
+            self.update_screws(model, state, i);
+            self.update_frames(model, i);
+        }
+    }
+
+    /// Screws and inertias of a vehicle at its pose.
+    pub fn update_screws(&mut self, model: &Model, state: &State, i: usize) {
+        let vehicle = &model.vehicles[i];
+        self.kin[i].update_positions(&vehicle.tree, &state.bases[i], &state.q[vehicle.q_range()]);
+    }
+
+    /// Frames of a vehicle's bodies in W, from its kinematics.
+    pub fn update_frames(&mut self, model: &Model, i: usize) {
+        let vehicle = &model.vehicles[i];
+        let frames = &mut self.frames[vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len()];
+        for (body, frame) in frames.iter_mut().enumerate() {
+            *frame = self.kin[i].frame(body);
         }
     }
 
