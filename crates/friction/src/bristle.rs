@@ -12,7 +12,7 @@
 
 use crate::ellipse::Ellipse;
 use crate::levels::Levels;
-use crate::trial::{Brush, BrushRate, FrictionError, Slope, Trial, check_not_negative, check_positive};
+use crate::trial::{Brush, BrushRate, FrictionError, Slope, Trial, check_not_negative, check_positive, is_zero};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -84,6 +84,12 @@ impl Bristle {
         }
     }
 
+    /// Rest of a contact that has just begun.
+    #[inline]
+    pub(crate) fn initial_rest(&self) -> f64 {
+        if self.dwell_time == 0.0 { 1.0 } else { 0.0 }
+    }
+
     /// Largest deflection along the grain that a normal force (N) holds at a rest, m.
     #[inline]
     pub fn calc_reach(&self, normal_force: f64, rest: f64) -> f64 {
@@ -121,7 +127,7 @@ impl Bristle {
         }
         // The damper sees what was left within the bound of now: the length that a falling bound takes away slips at the
         // tip. Counted as a rate of the bristle, it would push along the slip and give energy.
-        let before = if trial.s == Vector3::zeros() { trial.s } else { bound.hold(&trial.s).s };
+        let before = if is_zero(&trial.s) { trial.s } else { bound.hold(&trial.s).s };
         let rate = self.damping / trial.elapsed;
         let mut force = -(self.stiffness * held.s + rate * (held.s - before));
         let mut slope = Slope { across: (self.stiffness + rate) * held.shrink, along: 0.0, direction: held.normal };

@@ -19,6 +19,7 @@
 //! R. Michałowski and Z. Mróz, "Associated and non-associated sliding rules in contact friction problems", Archives of
 //! Mechanics 30 (1978) 259–276.
 
+use crate::trial::is_zero;
 use nalgebra::Vector3;
 
 /// Semi-axes along and across the grain, m.
@@ -48,7 +49,7 @@ impl Ellipse {
 
     #[inline]
     pub fn is_round(&self) -> bool {
-        self.along == self.across || self.grain == Vector3::zeros()
+        self.along == self.across || is_zero(&self.grain)
     }
 
     /// What the set holds of a deflection. Of the derivative only the part that turns is told, which is symmetric: what a

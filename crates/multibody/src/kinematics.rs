@@ -48,7 +48,7 @@ impl Kinematics {
         for (j, joint) in tree.joints.iter().enumerate() {
             let (body, parent) = (j + 1, tree.bodies[j + 1].parent);
             let frame_wj = &Frame { rot: self.rot[parent], pos: self.pos[parent] } * &joint.frame_pj;
-            let frame_wc = &frame_wj * &joint.calc_frame_jc(q);
+            let frame_wc = joint.place_child(&frame_wj, q);
             (self.rot[body], self.pos[body]) = (frame_wc.rot, frame_wc.pos);
             joint.write_screws(&frame_wc.rot, &frame_wc.pos, &mut self.screws[joint.column..]);
             self.inertia[body] = tree.bodies[body].inertia.transformed(&frame_wc.rot, &frame_wc.pos);

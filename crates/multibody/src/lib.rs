@@ -18,7 +18,7 @@ pub use description::{
     RobotDescription, Visual,
 };
 pub use dynamics::{
-    Accelerations, Dynamics, add_gravity, calc_armature_energy, calc_centroidal_momentum, calc_kinetic_energy,
+    Accelerations, Dynamics, Moves, add_gravity, calc_armature_energy, calc_centroidal_momentum, calc_kinetic_energy,
     calc_locked_inertia, calc_momentum, calc_potential_energy,
 };
 pub use followers::EmptyRange;

@@ -386,24 +386,27 @@ pub(crate) fn rotation_of_floating(q: &[f64]) -> UnitQuaternion<f64> {
 }
 
 impl Joint {
-    /// Child frame in the joint frame, at the coordinates `q` of the whole tree.
+    /// The child's frame, where the joint frame is at `frame_wj`, at the coordinates `q` of the whole tree.
     #[inline]
-    pub(crate) fn calc_frame_jc(&self, q: &[f64]) -> Frame {
+    pub(crate) fn place_child(&self, frame_wj: &Frame, q: &[f64]) -> Frame {
         let q = &q[self.q_index..];
         match self.kind {
             JointKind::Revolute => {
-                Frame { rot: rotation_about(&self.axis, self.multiplier * q[0] + self.offset), pos: Vec3::zeros() }
+                let turned = rotation_about(&self.axis, self.multiplier * q[0] + self.offset);
+                Frame { rot: frame_wj.rot * turned, pos: frame_wj.pos }
             }
             JointKind::Prismatic => {
-                Frame { rot: spatial::Mat3::identity(), pos: (self.multiplier * q[0] + self.offset) * self.axis }
+                let moved = (self.multiplier * q[0] + self.offset) * self.axis;
+                Frame { rot: frame_wj.rot, pos: frame_wj.point(&moved) }
             }
-            JointKind::Fixed => Frame::identity(),
+            JointKind::Fixed => *frame_wj,
             JointKind::Floating => {
-                Frame { rot: *rotation_of_floating(q).to_rotation_matrix().matrix(), pos: Vec3::new(q[0], q[1], q[2]) }
+                let rot = *rotation_of_floating(q).to_rotation_matrix().matrix();
+                frame_wj * &Frame { rot, pos: Vec3::new(q[0], q[1], q[2]) }
             }
             JointKind::Planar => {
                 let [ex, ey] = plane_axes(&self.axis);
-                Frame { rot: rotation_about(&self.axis, q[2]), pos: q[0] * ex + q[1] * ey }
+                frame_wj * &Frame { rot: rotation_about(&self.axis, q[2]), pos: q[0] * ex + q[1] * ey }
             }
         }
     }

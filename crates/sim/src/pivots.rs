@@ -153,7 +153,7 @@ pub(crate) fn eval_explicit(model: &Model, ws: &mut Workspace, elapsed: f64) {
 pub(crate) fn add_stiffness(model: &Model, ws: &mut Workspace, h: f64) {
     for pivot in &ws.pivots {
         for body in pivot.bodies.into_iter().filter(|b| *b < model.owners.len()) {
-            ws.extra[body] += calc_matrix(pivot, h);
+            *ws.extra[body].get_or_insert_default() += calc_matrix(pivot, h);
         }
     }
 }

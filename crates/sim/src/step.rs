@@ -12,7 +12,7 @@
 
 use crate::actuator::{ActuatorKind, CoordinatePoint, calc_thrust};
 use crate::books::{self, Thrust};
-use crate::contacts::{Outcome, Place, Touch, commit_bristles, find_touches};
+use crate::contacts::{Answer, Place, Touch, commit_bristles, find_touches};
 use crate::drive;
 use crate::effect::{self, Acting};
 use crate::mechanism;
@@ -68,8 +68,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
         _ => drift(model, state, ws, h),
     }
     drive::place(model, state, ws.end);
-    ws.update_positions(model, state);
-    place_centres(model, state, ws, scheme);
+    place_vehicles(model, state, ws, scheme);
     books::add_coordinates(model, state, ws);
     books::add_cut_off(model, state, ws);
     finish(model, state, ws);
@@ -79,28 +78,34 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     mechanism::commit(model, state, ws);
 }
 
-/// Shifts every base so that its vehicle's centre of mass moves by h p/m exactly, with the momentum that moves it.
+/// Kinematics and frames of the drifted state, every centre of mass in its place.
+fn place_vehicles(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        ws.update_screws(model, state, i);
+        if !vehicle.base.is_held() {
+            place_centre(model, state, ws, (i, scheme));
+        }
+        ws.update_frames(model, i);
+    }
+}
+
+/// Shifts a base so that its vehicle's centre of mass moves by h p/m exactly, with the momentum that moves it.
 ///
 /// The drift of the base origin is off by O(h²), and L − x × p turns that into spin: a body flying at 1 m/s and turning at
 /// 1 rad/s would be pushed aside by ½ mm/s, and its rotation would depend on the frame that one looks from.
-fn place_centres(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
-    for (i, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| !v.base.is_held()) {
-        let start = &ws.momentum_start[i];
-        let mean = match scheme {
-            Scheme::ImplicitMidpoint => 0.5 * (start + own_momentum(model, state, ws, i)),
-            _ => own_momentum(model, state, ws, i),
-        };
-        let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
-        let kin = &mut ws.kin[i];
-        let off = ws.centre_start[i] + mean * (ws.step / mass) - (kin.anchor + first_moment / mass);
-        let mask = vehicle.base.mask();
-        let shift = Vec3::from_fn(|k, _| if mask[3 + k] { off[k] } else { 0.0 });
-        state.bases[i].translation.vector += shift;
-        kin.anchor = state.bases[i].translation.vector;
-        for body in 0..vehicle.tree.bodies.len() {
-            ws.frames[vehicle.body0 + body] = kin.frame(body);
-        }
-    }
+fn place_centre(model: &Model, state: &mut State, ws: &mut Workspace, (i, scheme): (usize, Scheme)) {
+    let start = &ws.momentum_start[i];
+    let mean = match scheme {
+        Scheme::ImplicitMidpoint => 0.5 * (start + own_momentum(model, state, ws, i)),
+        _ => own_momentum(model, state, ws, i),
+    };
+    let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
+    let kin = &mut ws.kin[i];
+    let off = ws.centre_start[i] + mean * (ws.step / mass) - (kin.anchor + first_moment / mass);
+    let mask = model.vehicles[i].base.mask();
+    let shift = Vec3::from_fn(|k, _| if mask[3 + k] { off[k] } else { 0.0 });
+    state.bases[i].translation.vector += shift;
+    kin.anchor = state.bases[i].translation.vector;
 }
 
 /// Linear momentum of a vehicle's bodies, without the parts that effects put inside them.
@@ -191,6 +196,7 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
 fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) {
     let h = ws.step;
     mechanism::place(model, ws, scheme);
+    ws.answers.resize(ws.touches.len(), Answer::default());
     for i in 0..ws.touches.len() {
         let is_stiff = scheme == Scheme::ImplicitMidpoint && is_stiff(model, ws, i);
         let touch = &mut ws.touches[i];
@@ -199,8 +205,9 @@ fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) 
         if is_stiff {
             touch.place = Place { gap_base: touch.gap, s_base: touch.s, beta: h, theta: 1.0, elapsed: h };
         }
-        let u = touch.u;
-        touch.out = touch.eval(law, &u, h);
+        let answer = &mut ws.answers[i];
+        touch.eval(law, touch.u, answer);
+        touch.draw_line(law, answer, h);
         if scheme == Scheme::SemiImplicitEuler {
             touch.out.g = spatial::Mat3::zeros();
             touch.out.line = touch.out.law;
@@ -277,7 +284,7 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
         let first_midpoint_pass = scheme == Scheme::ImplicitMidpoint && pass == 0;
         converged = match scheme {
             Scheme::SemiImplicitEuler => speed_limit::hold_in_step(model, state, ws),
-            _ => laws_hold(model, state, ws, h),
+            _ => laws_hold(model, state, ws, first_midpoint_pass),
         };
         must_factor = !converged;
         if first_midpoint_pass {
@@ -325,36 +332,51 @@ fn classical_gain(gain: &Twist, base: &Twist, h: f64) -> Twist {
     Twist::new(gain.ang, gain.lin + h * base.ang.cross(&base.lin))
 }
 
-/// Evaluates all laws at the solution; where a line missed, draws the next one. `true` if none did.
-fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
+/// Evaluates all laws at the solution; where a line missed, or another pass comes anyway, draws the next ones. `true` if
+/// none did.
+fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, goes_on: bool) -> bool {
+    let h = ws.step;
     let mut check = PairCheck::default();
     for i in 0..ws.touches.len() {
         let gain = relative_gain(model, ws, &ws.touches[i]);
         let touch = &mut ws.touches[i];
         let law = &model.laws[touch.pair as usize];
         let force = touch.out.line - touch.out.g * gain / h;
-        let next = touch.eval(law, &(touch.u + touch.carried + gain), h);
+        touch.eval(law, touch.u + touch.carried + gain, &mut ws.answers[i]);
+        let next = &touch.out;
         let mut miss = (next.law - force).norm();
         if let Some(friction) = law.friction.as_ref().filter(|_| next.pressing[0] != next.normal_force) {
             // A bound of friction that the normal force does not bear out is a miss as well.
             miss = miss.max(friction.highest_level() * (next.pressing[0] - next.normal_force).abs());
         }
         check.add(touch.pair, miss, next.law.norm());
-        touch.out = Outcome { force, ..next };
+        touch.out.force = force;
     }
-    let mut joints_hold = true;
+    let joints_hold = joint_laws_hold(model, state, ws);
+    let pivots_hold = pivots::laws_hold(model, ws);
+    let hold = mechanism::laws_hold(model, ws) && pivots_hold && joints_hold && check.holds();
+    if goes_on || !hold {
+        for (touch, answer) in ws.touches.iter_mut().zip(&ws.answers) {
+            touch.draw_line(&model.laws[touch.pair as usize], answer, h);
+        }
+    }
+    hold
+}
+
+fn joint_laws_hold(model: &Model, state: &State, ws: &mut Workspace) -> bool {
+    let h = ws.step;
+    let mut hold = true;
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
         let (effort, slope) = ws.coordinate_lines[i];
         let v_new = state.v[i] + ws.v_gain[i];
         let on_line = effort - slope * ws.v_gain[i];
         let law = coordinate.eval(&ws.coordinate_points[i], v_new, &Acting { model, state, step: h, since: None });
-        joints_hold &= (law.effort - on_line).abs() <= LAW_TOLERANCE * law.effort.abs() + FORCE_FLOOR;
+        hold &= (law.effort - on_line).abs() <= LAW_TOLERANCE * law.effort.abs() + FORCE_FLOOR;
         ws.coordinate_forces[i] = crate::actuator::CoordinateForce { effort: on_line, ..law };
         ws.coordinate_lines[i] = (law.effort + law.slope * ws.v_gain[i], law.slope);
         ws.coordinate_points[i].branch = law.branch;
     }
-    let pivots_hold = pivots::laws_hold(model, ws);
-    mechanism::laws_hold(model, ws) && pivots_hold && joints_hold && check.holds()
+    hold
 }
 
 /// Compares lines with laws, pair by pair: a miss counts against the largest force of its own pair, so that a press

@@ -1,7 +1,7 @@
 //! Scratch of a step: sized once from the model, so that a step allocates nothing.
 
 use crate::actuator::{CoordinateForce, CoordinatePoint};
-use crate::contacts::Touch;
+use crate::contacts::{Answer, Touch};
 use crate::effect::calc_carried;
 use crate::model::{Base, Model, Vehicle};
 use crate::state::State;
@@ -28,6 +28,8 @@ pub(crate) struct Workspace {
     pub points: Vec<ContactPoint>,
     pub reach: Vec<f64>,
     pub touches: Vec<Touch>,
+    /// What the touches' laws answered last, in their order.
+    pub answers: Vec<Answer>,
     pub couplings: Vec<crate::mechanism::Coupling>,
     pub pivots: Vec<crate::pivots::PivotTouch>,
     /// Per body, about its vehicle's anchor: forces from outside, then what motion takes beyond them.
@@ -37,7 +39,8 @@ pub(crate) struct Workspace {
     pub thrusts: Vec<crate::books::Thrust>,
     pub bias: Vec<Wrench>,
     pub contact: Vec<Wrench>,
-    pub extra: Vec<SpatialMatrix>,
+    /// What contacts and mechanisms add to the inertia of a body.
+    pub extra: Vec<Option<SpatialMatrix>>,
     /// Change of the bodies' twists in the step; the world's is the last and zero.
     pub dvel: Vec<Twist>,
     pub base_start: Vec<Twist>,
@@ -90,6 +93,7 @@ impl Workspace {
             points: Vec::new(),
             reach: vec![0.0; bodies],
             touches: Vec::new(),
+            answers: Vec::new(),
             couplings: Vec::with_capacity(model.mechanisms.len()),
             pivots: Vec::new(),
             external: vec![Wrench::default(); bodies],
@@ -97,7 +101,7 @@ impl Workspace {
             thrusts: Vec::with_capacity(model.actuators.len()),
             bias: vec![Wrench::default(); bodies],
             contact: vec![Wrench::default(); bodies],
-            extra: vec![SpatialMatrix::default(); bodies],
+            extra: vec![None; bodies],
             dvel: vec![Twist::default(); bodies],
             base_start: vec![Twist::default(); model.vehicles.len()],
             momentum_start: vec![Vec3::zeros(); model.vehicles.len()],
@@ -130,11 +134,24 @@ impl Workspace {
 
     /// Frames, screws and inertias at the state's poses.
     pub fn update_positions(&mut self, model: &Model, state: &State) {
-        for (i, vehicle) in model.vehicles.iter().enumerate() {
-            self.kin[i].update_positions(&vehicle.tree, &state.bases[i], &state.q[vehicle.q_range()]);
-            for body in 0..vehicle.tree.bodies.len() {
-                self.frames[vehicle.body0 + body] = self.kin[i].frame(body);
-            }
+        for i in 0..model.vehicles.len() {
+            self.update_screws(model, state, i);
+            self.update_frames(model, i);
+        }
+    }
+
+    /// Screws and inertias of a vehicle at its pose.
+    pub fn update_screws(&mut self, model: &Model, state: &State, i: usize) {
+        let vehicle = &model.vehicles[i];
+        self.kin[i].update_positions(&vehicle.tree, &state.bases[i], &state.q[vehicle.q_range()]);
+    }
+
+    /// Frames of a vehicle's bodies in W, from its kinematics.
+    pub fn update_frames(&mut self, model: &Model, i: usize) {
+        let vehicle = &model.vehicles[i];
+        let frames = &mut self.frames[vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len()];
+        for (body, frame) in frames.iter_mut().enumerate() {
+            *frame = self.kin[i].frame(body);
         }
     }
 
@@ -165,10 +182,10 @@ impl Workspace {
 
     /// Twist of a global body about the point at `point` (W), W axes; zero for the world.
     #[inline]
-    pub fn vel_at(&self, model: &Model, body: usize, point: &Vec3) -> Vec3 {
-        let Some(&(vehicle, local)) = model.owners.get(body) else { return Vec3::zeros() };
+    pub fn twist_at(&self, model: &Model, body: usize, point: &Vec3) -> Twist {
+        let Some(&(vehicle, local)) = model.owners.get(body) else { return Twist::default() };
         let kin = &self.kin[vehicle];
-        kin.vel[local].at(&(point - kin.anchor))
+        kin.vel[local].about(&(point - kin.anchor))
     }
 }
 

@@ -159,13 +159,22 @@ pub struct SpatialMatrix {
 }
 
 impl SpatialMatrix {
-    /// Xᵃᵀ G Xᵇ: what the 3×3 map `g` from the velocity of a point at `r_b` to a force at `r_a` is about the origins.
+    /// Xᵀ G X: what the symmetric 3×3 map `g` from the velocity of a point at `r` to a force there is about the origin.
+    ///
+    ///   v = v_o − [r] ω,  m = [r] f:   (m, f) = ( −[r] G [r]   [r] G )  (ω, v_o)
+    ///                                          (    −G [r]       G  )
     #[inline]
-    pub fn from_point(g: &Mat3, r_a: &Vec3, r_b: &Vec3) -> Self {
-        let (ra, rb) = (skew(r_a), skew(r_b));
-        // v = v_o − [r_b] ω;  m = [r_a] f.
-        let gr = g * rb;
-        Self { ma: -(ra * gr), ml: ra * g, fa: -gr, fl: *g }
+    pub fn from_point(g: &Mat3, r: &Vec3) -> Self {
+        let ml = cross_columns(r, g);
+        let fa = ml.transpose();
+        Self { ma: cross_columns(r, &fa), ml, fa, fl: *g }
+    }
+
+    /// The same for two origins, from which the point is at `r_a` and `r_b`: Xₐᵀ G Xₐ, Xₐᵀ G X_b and X_bᵀ G X_b.
+    #[inline]
+    pub fn from_point_of_two(g: &Mat3, r_a: &Vec3, r_b: &Vec3) -> [Self; 3] {
+        let (a, b) = (Self::from_point(g, r_a), Self::from_point(g, r_b));
+        [a, Self { ma: cross_columns(r_a, &b.fa), fa: b.fa, ..a }, b]
     }
 
     /// Image of a twist.
@@ -173,6 +182,28 @@ impl SpatialMatrix {
     pub fn mul(&self, v: &Twist) -> Wrench {
         Wrench { moment: self.ma * v.ang + self.ml * v.lin, force: self.fa * v.ang + self.fl * v.lin }
     }
+
+    /// The transposed map.
+    pub fn transpose(&self) -> Self {
+        let Self { ma, ml, fa, fl } = self;
+        Self { ma: ma.transpose(), ml: fa.transpose(), fa: ml.transpose(), fl: fl.transpose() }
+    }
+
+    /// Image of a twist under the transposed map.
+    #[inline]
+    pub fn tr_mul(&self, v: &Twist) -> Wrench {
+        Wrench {
+            moment: self.ma.tr_mul(&v.ang) + self.fa.tr_mul(&v.lin),
+            force: self.ml.tr_mul(&v.ang) + self.fl.tr_mul(&v.lin),
+        }
+    }
+}
+
+/// [r] M, a cross product per column.
+#[inline]
+fn cross_columns(r: &Vec3, m: &Mat3) -> Mat3 {
+    let column = |k: usize| r.cross(&Vec3::new(m[(0, k)], m[(1, k)], m[(2, k)]));
+    Mat3::from_columns(&[column(0), column(1), column(2)])
 }
 
 impl From<&Inertia> for SpatialMatrix {
@@ -227,6 +258,22 @@ mod tests {
         let v = Twist::new(Vec3::new(0.3, 0.1, -0.4), Vec3::new(1.0, 0.2, 0.7));
         let (a, b) = (SpatialMatrix::from(&sample()).mul(&v), sample().momentum(&v));
         assert!((a.moment - b.moment).norm() + (a.force - b.force).norm() < ROUND_OFF);
+    }
+
+    /// G acts on the difference of two bodies' velocities at a point: its four blocks give the forces of both about their origins.
+    #[test]
+    fn stiffness_at_a_point_is_moved_to_two_origins() {
+        let g = Mat3::new(3.0, 0.2, -0.1, 0.2, 2.0, 0.4, -0.1, 0.4, 5.0);
+        let (r_a, r_b) = (Vec3::new(0.3, -0.7, 1.1), Vec3::new(-0.5, 0.2, 0.9));
+        let v = Twist::new(Vec3::new(0.3, 0.1, -0.4), Vec3::new(1.0, 0.2, 0.7));
+        let about = |left: &Vec3, right: &Vec3| Wrench::from_force_at(g * v.at(right), left);
+        let [aa, ab, bb] = SpatialMatrix::from_point_of_two(&g, &r_a, &r_b);
+        for (matrix, wrench) in [(aa, about(&r_a, &r_a)), (ab, about(&r_a, &r_b)), (bb, about(&r_b, &r_b))] {
+            let off = matrix.mul(&v) - wrench;
+            assert!(off.moment.norm() + off.force.norm() < ROUND_OFF);
+            let w = Twist::new(Vec3::new(-0.2, 0.6, 0.1), Vec3::new(0.5, -0.9, 0.3));
+            assert!((w.dot(&matrix.mul(&v)) - v.dot(&matrix.tr_mul(&w))).abs() < ROUND_OFF);
+        }
     }
 
     #[test]

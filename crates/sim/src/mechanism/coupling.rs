@@ -228,7 +228,7 @@ pub(crate) fn update_carried(model: &Model, ws: &mut Workspace) {
 pub(crate) fn add_stiffness(model: &Model, ws: &mut Workspace, h: f64) {
     for coupling in &ws.couplings {
         for (k, body) in coupling.bodies.into_iter().enumerate().filter(|(_, b)| *b < model.owners.len()) {
-            ws.extra[body] += coupling.calc_matrix(k, k, h);
+            *ws.extra[body].get_or_insert_default() += coupling.calc_matrix(k, k, h);
         }
     }
 }
