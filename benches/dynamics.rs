@@ -142,7 +142,7 @@ struct Arm {
 impl Arm {
     fn new(base: Base) -> Self {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("robots/bench/peer-arm7.urdf");
-        let robot = load_urdf(&file, &SearchPaths::default()).unwrap_or_else(|e| panic!("{e}"));
+        let robot = load_urdf(&file, &SearchPaths::default()).unwrap_or_else(|e| panic!("{e}")).robot;
         let tree = Tree::from_description(&robot);
         assert_eq!(6 + tree.nv, N, "the arm has seven joints");
         let (pose, twist) = match base {

@@ -8,6 +8,7 @@ mod dynamics;
 mod inertial;
 mod kinematics;
 mod mesh;
+mod singular;
 mod tree;
 mod urdf;
 
@@ -22,5 +23,9 @@ pub use dynamics::{
 };
 pub use kinematics::Kinematics;
 pub use mesh::{MeshError, SearchPaths, TextPlace, load_mesh};
+pub use singular::{Freedom, find_singular_freedoms, find_singular_freedoms_at};
 pub use tree::{Body, Joint, Link, Tree};
-pub use urdf::{UrdfError, UrdfErrors, UrdfProblem, load_urdf, parse_urdf};
+pub use urdf::{
+    LoadedUrdf, Loss, UrdfDoubt, UrdfError, UrdfErrors, UrdfFinding, UrdfFindings, UrdfProblem, UrdfWarning, UrdfWarnings,
+    load_urdf, parse_urdf,
+};
