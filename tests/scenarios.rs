@@ -9,12 +9,13 @@ use std::fs;
 use support::{files, load, root, run};
 
 #[test]
-fn every_robot_loads_and_is_sound() {
+fn every_robot_loads_without_a_doubt() {
     let robots = files("robots", "urdf");
     assert!(robots.len() >= 3, "the walk found only {robots:?}");
     for robot in robots {
-        if let Err(errors) = load_urdf(&robot, &SearchPaths::default()) {
-            panic!("{}: {errors}", robot.display());
+        match load_urdf(&robot, &SearchPaths::default()) {
+            Ok(loaded) => assert_eq!(loaded.warnings.count(), 0, "{}", loaded.warnings),
+            Err(errors) => panic!("{}: {errors}", robot.display()),
         }
         assert!(robot.with_file_name("NOTICE").exists(), "{} has no NOTICE beside it", robot.display());
     }

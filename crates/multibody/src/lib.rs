@@ -9,6 +9,7 @@ mod followers;
 mod inertial;
 mod kinematics;
 mod mesh;
+mod singular;
 mod tree;
 mod urdf;
 
@@ -24,5 +25,9 @@ pub use dynamics::{
 pub use followers::EmptyRange;
 pub use kinematics::Kinematics;
 pub use mesh::{MeshError, SearchPaths, TextPlace, load_mesh};
+pub use singular::{Freedom, find_singular_freedoms, find_singular_freedoms_at};
 pub use tree::{Body, Joint, Link, SlidingPoint, Tree};
-pub use urdf::{UrdfError, UrdfErrors, UrdfProblem, load_urdf, parse_urdf};
+pub use urdf::{
+    LoadedUrdf, Loss, UrdfDoubt, UrdfError, UrdfErrors, UrdfFinding, UrdfFindings, UrdfProblem, UrdfWarning, UrdfWarnings,
+    load_urdf, parse_urdf,
+};

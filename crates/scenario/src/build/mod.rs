@@ -12,6 +12,7 @@ mod faults;
 mod kinematics;
 mod laws;
 mod mechanisms;
+mod missing;
 mod overlap;
 mod shapes;
 mod start;
@@ -29,7 +30,7 @@ pub use stock::Stock;
 use crate::error::ScenarioErrors;
 use crate::spec::{self, Scenario};
 use crate::strategy;
-use multibody::RobotDescription;
+use multibody::{RobotDescription, UrdfWarnings};
 use sim::{Controller, Environment, Integrator, Model, ModelSpec, World};
 use spatial::Vec3;
 use std::sync::Arc;
@@ -40,6 +41,8 @@ pub struct Mission {
     pub scenario: Scenario,
     /// The robots as their files describe them, one per vehicle.
     pub robots: Vec<RobotDescription>,
+    /// What is doubtful in those files, one list per vehicle.
+    pub robot_warnings: Vec<UrdfWarnings>,
     /// The world at t = 0.
     pub world: World,
     /// The driven coordinates, in the order of [`Model::with_drive_paths`].
@@ -76,9 +79,9 @@ pub fn build_from(scenario: &Scenario, stock: &Stock) -> Result<Mission, Scenari
     let mut faults = Faults::new(scenario);
     let plan = effects::check(scenario, &mut faults);
     let Some(vehicles) = vehicles::load(scenario, &plan, stock, &mut faults) else { return Err(faults.into_errors()) };
-    let (robots, nominal_coms, mut specs) = vehicles;
+    let vehicles::Loaded { files, nominal_coms, mut specs } = vehicles;
     let table = actuators::resolve(scenario, &mut specs, &mut faults);
-    let (shapes, pairs) = shapes::resolve(scenario, &robots, &specs, &mut faults);
+    let (shapes, pairs) = shapes::resolve(scenario, &files.robots, &specs, &mut faults);
     let mechanisms = mechanisms::resolve(scenario, &specs, &mut faults);
     let environment = environment(&scenario.environment);
     let mut parts = effects::Parts {
@@ -115,12 +118,12 @@ pub fn build_from(scenario: &Scenario, stock: &Stock) -> Result<Mission, Scenari
         }
     };
     let Some((model, drives)) = model else { return Err(faults.into_errors()) };
-    finish(scenario, robots, (&Arc::new(model), drives), &parts.table, faults)
+    finish(scenario, files, (&Arc::new(model), drives), &parts.table, faults)
 }
 
 fn finish(
     scenario: &Scenario,
-    robots: Vec<RobotDescription>,
+    files: vehicles::RobotFiles,
     (model, drives): (&Arc<Model>, Vec<DriveChannel>),
     table: &ActuatorTable,
     mut faults: Faults<'_>,
@@ -128,11 +131,13 @@ fn finish(
     check_sensors(scenario, model, &mut faults);
     approach::check_docking(scenario, model, &mut faults);
     let world = mechanisms::settle(scenario, start::world(scenario, model, table, &mut faults));
+    missing::check_freedoms(&world, &files.warnings, &mut faults);
     let controller = strategy::build(scenario, model, table, &mut faults);
     match controller {
         Some(controller) if faults.is_empty() => Ok(Mission {
             scenario: scenario.clone(),
-            robots,
+            robots: files.robots,
+            robot_warnings: files.warnings,
             world,
             drives,
             controller,

@@ -8,17 +8,18 @@
 use super::beds;
 use super::faults::Faults;
 use super::laws::{pair_law, pivot_law};
+use super::missing;
 use crate::spec::{ContactRule, FrictionLaw, Grain, PointRule, Scenario};
-use contact::Shape;
+use contact::{Bed, Shape};
 use multibody::{Geometry, RobotDescription, Tree};
 use record::docking_of_geometry;
 use sim::{Base, PairLaw, ShapeSpec, VehicleSpec};
 use spatial::Vec3;
 
 /// A shape with the names it answers to.
-struct Named {
-    spec: ShapeSpec,
-    names: Vec<String>,
+pub(super) struct Named {
+    pub(super) spec: ShapeSpec,
+    pub(super) names: Vec<String>,
 }
 
 impl Named {
@@ -39,7 +40,9 @@ pub(super) fn resolve(
         shapes.extend(of_robot(v, &vehicles[v].name, robot));
     }
     add_scenario_shapes(scenario, (robots, vehicles), &mut shapes, faults);
-    check_rules(scenario, &shapes, faults);
+    let lost = missing::lost_shapes(robots, vehicles);
+    check_rules(scenario, &shapes.iter().chain(lost.iter().map(|l| &l.named)).collect::<Vec<_>>(), faults);
+    missing::check_touching(&lost, &shapes, |a, b| law_of_pair(scenario, vehicles, a, b).is_some(), faults);
     check_grains(scenario, faults);
     let mut pairs = Vec::new();
     for b in 1..shapes.len() {
@@ -56,7 +59,8 @@ pub(super) fn resolve(
 
 fn of_robot<'a>(v: usize, vehicle: &'a str, robot: &'a RobotDescription) -> impl Iterator<Item = Named> + 'a {
     robot.links.iter().enumerate().flat_map(move |(link, description)| {
-        description.collisions.iter().map(move |collision| Named {
+        let had = description.collisions.iter().filter(|c| !matches!(c.geometry, Geometry::Missing(_)));
+        had.map(move |collision| Named {
             spec: ShapeSpec {
                 name: collision.name.clone(),
                 vehicle: Some(v),
@@ -69,7 +73,7 @@ fn of_robot<'a>(v: usize, vehicle: &'a str, robot: &'a RobotDescription) -> impl
     })
 }
 
-/// The collision shape of a URDF geometry.
+/// The collision shape of a URDF geometry; a missing one touches nothing.
 pub fn shape_of_geometry(geometry: &Geometry) -> Shape {
     match geometry {
         Geometry::Box { size } => Shape::Cuboid { half_extents: 0.5 * size },
@@ -77,6 +81,7 @@ pub fn shape_of_geometry(geometry: &Geometry) -> Shape {
         Geometry::Cylinder { radius, length } => Shape::Cylinder { radius: *radius, half_length: 0.5 * length },
         Geometry::Capsule { radius, length } => Shape::Capsule { radius: *radius, half_length: 0.5 * length },
         Geometry::Docking(geometry) => Shape::Docking(docking_of_geometry(geometry)),
+        Geometry::Missing(_) => Shape::Bed(Bed::new(Vec::new())),
         Geometry::Mesh(mesh) => Shape::TriMesh {
             vertices: mesh.vertices.iter().map(|v| Vec3::from(*v)).collect(),
             triangles: mesh.triangles.clone(),
@@ -129,7 +134,7 @@ pub(super) fn place_of(
 }
 
 /// A rule that names nothing is a slip of the pen.
-fn check_rules(scenario: &Scenario, shapes: &[Named], faults: &mut Faults<'_>) {
+fn check_rules(scenario: &Scenario, shapes: &[&Named], faults: &mut Faults<'_>) {
     let mut check = |key: String, pattern: &str| {
         let all = || shapes.iter().flat_map(|s| s.names.iter().map(String::as_str));
         if !all().any(|name| crate::glob_matches(pattern, name)) {
