@@ -10,11 +10,11 @@
 //! 3 %. Cases: `instructions/cases.rs`; how it is counted: `instructions/callgrind.rs`; what is compared: `instructions/table.rs`.
 #![allow(clippy::print_stdout)]
 
-mod fixtures;
 #[path = "instructions/callgrind.rs"]
 mod callgrind;
 #[path = "instructions/cases.rs"]
 mod cases;
+mod fixtures;
 #[path = "instructions/table.rs"]
 mod table;
 

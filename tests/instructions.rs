@@ -81,6 +81,10 @@ fn what_moved_a_figure_stands_in_changes() {
     let changes = words(readme.split_once("\n## Changes").expect("README has Changes").1);
     for row in parse(&read("tests/tables/instructions.md")).iter().filter(|r| !r.reason.is_empty()) {
         let reason = words(&row.reason);
-        assert!(changes.contains(&reason), "{:?} moved because \"{reason}\", which README's Changes does not tell", row.case);
+        assert!(
+            changes.contains(&reason),
+            "{:?} moved because \"{reason}\", which README's Changes does not tell",
+            row.case
+        );
     }
 }

@@ -67,14 +67,27 @@ pub(crate) fn add_external(model: &Model, state: &mut State, ws: &Workspace, h: 
     effect::add_works(model, state, ws, |body| displacing_twist(model, ws, body), h);
 }
 
-/// Work and loss of a touching point, whose bodies gained `gain` against each other and took `moved` (m) of each other.
-pub(crate) fn add_touch(model: &Model, state: &mut State, touch: &Touch, (gain, moved): (&Vec3, &Vec3), h: f64) {
-    let work = touch.out.force.dot(moved);
+/// Work and loss of a touching point, whose bodies gained `gain` against each other.
+pub(crate) fn add_touch(model: &Model, state: &mut State, ws: &Workspace, touch: &Touch, gain: &Vec3) {
+    let h = if ws.since.is_some() { 1.0 } else { ws.step };
+    let moved = h * (touch.u + ws.gain_share * (touch.carried + gain));
+    let work = touch.out.force.dot(&moved);
+    // At the mean of the velocities before and after: what motion gained.
+    state.account.contact_to_motion += h * touch.out.force.dot(&(touch.u + 0.5 * gain));
     state.account.contact_work += work;
     state.account.contact_intake += (-work).max(0.0);
     let law = &model.laws[touch.pair as usize];
-    state.account.contact_loss += calc_touch_loss(law, touch, gain, h);
+    state.account.contact_loss += calc_acting_share(touch) * calc_touch_loss(law, touch, gain, h);
 }
+
+/// Share of the law's normal force that acted: one, but for steps that end before line and law agree.
+fn calc_acting_share(touch: &Touch) -> f64 {
+    let (acting, law) = (touch.normal.dot(&touch.out.force), touch.normal.dot(&touch.out.law));
+    if (acting - law).abs() <= DISAGREE * law.abs() { 1.0 } else { (acting / law).clamp(0.0, 1.0) }
+}
+
+/// Relative difference of a line's force and a law's that is more than the solver's tolerance.
+const DISAGREE: f64 = 1e-2;
 
 /// What a point's laws take for good in a step of `h`, J, where they were evaluated; an explicit stage, whose laws have no place in a
 /// step, counts what its bristle stores as well.

@@ -205,6 +205,7 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         let (gain, is_stage) = (pivot.gain(ws), ws.since.is_some());
         let work = h * pivot.moment.dot(&(pivot.rate + ws.gain_share * gain));
         state.account.contact_work += work;
+        state.account.contact_to_motion += h * pivot.moment.dot(&(pivot.rate + 0.5 * gain));
         state.account.contact_intake += (-work).max(0.0);
         state.account.contact_loss += if is_stage { -work } else { pivot.calc_loss(model, h) };
     }

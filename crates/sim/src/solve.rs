@@ -265,11 +265,7 @@ fn add_within(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: &
 /// What acts on the base's freedom `k` for a unit of each of the other's.
 fn row_of(matrix: &SpatialMatrix, k: usize) -> Wrench {
     let row = |m: &Mat3| m.row(k % 3).transpose();
-    if k < 3 {
-        Wrench::new(row(&matrix.ma), row(&matrix.ml))
-    } else {
-        Wrench::new(row(&matrix.fa), row(&matrix.fl))
-    }
+    if k < 3 { Wrench::new(row(&matrix.ma), row(&matrix.ml)) } else { Wrench::new(row(&matrix.fa), row(&matrix.fl)) }
 }
 
 /// Joint accelerations of the present state under forces that do not answer to gains, into `v_gain`: bases go by their momentum, and what has

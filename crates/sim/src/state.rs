@@ -107,6 +107,9 @@ pub struct Account {
     pub environment_work: f64,
     /// Work of contact forces, J (negative: stored or dissipated).
     pub contact_work: f64,
+    /// What contact forces gave to motion, J: at the mean of the velocities before and after each step. It differs from their work by
+    /// what the integrator took there.
+    pub contact_to_motion: f64,
     /// What went into contacts, J: the parts of that work, step by step and point by point, that contacts took.
     pub contact_intake: f64,
     /// What contacts have dissipated, J: dampers, friction, and bristles that were cut off when their points parted.
@@ -199,6 +202,7 @@ impl Account {
         self.impulse += other.impulse * k;
         self.environment_work += other.environment_work * k;
         self.contact_work += other.contact_work * k;
+        self.contact_to_motion += other.contact_to_motion * k;
         self.contact_intake += other.contact_intake * k;
         self.contact_loss += other.contact_loss * k;
         self.joint_loss += other.joint_loss * k;

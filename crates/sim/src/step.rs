@@ -420,8 +420,7 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         add_impulse(model, state, ws, touch.body_a, &touch.point, &Wrench::new(-moment, -impulse));
         add_impulse(model, state, ws, touch.body_b, &touch.point, &Wrench::new(moment, impulse));
         let gain = relative_gain(model, ws, touch);
-        let moved = h * (touch.u + ws.gain_share * (touch.carried + gain));
-        books::add_touch(model, state, touch, (&gain, &moved), h);
+        books::add_touch(model, state, ws, touch, &gain);
     }
     mechanism::add_impulses(model, state, ws, h);
     pivots::add_impulses(model, state, ws, h);

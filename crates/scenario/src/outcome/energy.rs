@@ -47,6 +47,7 @@ impl EnergyWatch {
         add("contact_loss_j".into(), balance.contact_loss, "dissipated by dampers and friction of contacts");
         add("joint_loss_j".into(), balance.joint_loss, "dissipated by damping, friction and stops of joints");
         add("numerical_loss_j".into(), balance.numerical_loss, "what nothing else explains: the integrator's own");
+        add("numerical_loss_in_contacts_j".into(), balance.numerical_loss_in_contacts, "of it, taken in contacts");
         add_works(world, metrics);
         warn(&balance, kinetic)
     }
@@ -67,13 +68,13 @@ fn add_works(world: &World, metrics: &mut Vec<Metric>) {
 }
 
 fn warn(balance: &EnergyBalance, kinetic: f64) -> Option<String> {
-    let (loss, intake) = (balance.numerical_loss.abs(), balance.contact_intake);
+    let (loss, intake) = (balance.numerical_loss_in_contacts.abs(), balance.contact_intake);
     let is_noticed = loss > WORTH_A_WARNING * intake && loss > ROUND_OFF * (kinetic + balance.stored_change.abs());
     (intake > 0.0 && is_noticed).then(|| {
         format!(
-            "the integrator itself took {:.3e} J, {:.0} % of the {:.3e} J that went through contacts: what bounces is decided by the \
-             step; set integrator.step_s smaller, or integrator.kind = \"implicit-midpoint\" or \"rk4\"",
-            balance.numerical_loss,
+            "in contacts the integrator itself took {:.3e} J, {:.0} % of the {:.3e} J that went through them: how things bounce there is \
+             decided by the step; set integrator.step_s smaller, or integrator.kind = \"implicit-midpoint\" or \"rk4\"",
+            balance.numerical_loss_in_contacts,
             100.0 * loss / intake,
             intake
         )
