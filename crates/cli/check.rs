@@ -3,6 +3,7 @@
 use crate::Status;
 use anyhow::anyhow;
 use softdock::multibody::{SearchPaths, Tree, UrdfErrors, UrdfFinding, UrdfWarnings, load_urdf};
+use softdock::scenario::recording::{recorder_plan, scene};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
@@ -107,6 +108,7 @@ fn lines(warnings: &UrdfWarnings) -> Vec<String> {
 fn check_scenario(file: &Path, arguments: &Arguments) -> anyhow::Result<Sound> {
     let scenario = softdock::scenario::load(file, &arguments.set)?;
     let mission = softdock::scenario::build(&scenario)?;
+    recorder_plan(&mission, &scene(&mission))?;
     let model = mission.world.model();
     let line = format!(
         "Scenario \"{}\": {} vehicles, {} contact pairs, {} actuators, {} steps of {} s",
