@@ -124,26 +124,31 @@ fn answers(touch: &Touch) -> bool {
     touch.out.g != Mat3::zeros()
 }
 
-/// What touches add to the bodies' own inertia, and between the two bodies of each pair.
+/// What touches add to the bodies' own inertia, and between the two bodies of each pair: summed about B's anchor, then moved
+/// to A's. A pair's touches stand beside each other.
 fn add_touches(model: &Model, ws: &mut Workspace) {
     let Workspace { touches, kin, extra, islands, .. } = ws;
+    let bodies_of = |t: &Touch| [t.body_a, t.body_b];
     islands.cross.clear();
-    for touch in touches.iter().filter(|t| answers(t)) {
-        let (a, b, g) = (touch.body_a, touch.body_b, &touch.out.g);
-        let arm = |body: usize| model.owners.get(body).map(|&(vehicle, _)| touch.point - kin[vehicle].anchor);
-        match (arm(a), arm(b)) {
-            (Some(r_a), Some(r_b)) => {
-                let [own_a, both, own_b] = SpatialMatrix::from_point_of_two(g, &r_a, &r_b);
-                *extra[a].get_or_insert_default() += own_a;
-                *extra[b].get_or_insert_default() += own_b;
-                match islands.cross.last_mut().filter(|(bodies, _)| *bodies == [a, b]) {
-                    Some((_, sum)) => *sum += both,
-                    None => islands.cross.push(([a, b], both)),
-                }
-            }
-            (Some(r), None) => *extra[a].get_or_insert_default() += SpatialMatrix::from_point(g, &r),
-            (None, Some(r)) => *extra[b].get_or_insert_default() += SpatialMatrix::from_point(g, &r),
-            (None, None) => {}
+    for run in touches.chunk_by(|t, u| bodies_of(t) == bodies_of(u)) {
+        let [a, b] = bodies_of(&run[0]);
+        let anchor = |body: usize| model.owners.get(body).map(|&(vehicle, _)| kin[vehicle].anchor);
+        let (anchor_a, anchor_b) = (anchor(a), anchor(b));
+        let Some(origin) = anchor_b.or(anchor_a) else { continue };
+        let mut sum = SpatialMatrix::default();
+        let mut is_stiff = false;
+        for touch in run.iter().filter(|t| answers(t)) {
+            sum += SpatialMatrix::from_point(&touch.out.g, &(touch.point - origin));
+            is_stiff = true;
+        }
+        if !is_stiff {
+            continue;
+        }
+        *extra[if anchor_b.is_some() { b } else { a }].get_or_insert_default() += sum;
+        if let (Some(anchor_a), Some(anchor_b)) = (anchor_a, anchor_b) {
+            let [between, own] = sum.about_first(&(anchor_b - anchor_a));
+            *extra[a].get_or_insert_default() += own;
+            islands.cross.push(([a, b], between));
         }
     }
 }
@@ -373,7 +378,7 @@ fn padded(n: usize) -> usize {
     n.next_multiple_of(LANES)
 }
 
-/// A = UᵀU in place, upper triangle, `n` rows of `padded(n)`.
+/// A = UᵀU in place, upper triangle, `n` rows of `padded(n)`; on the diagonal 1/u, since that is what solving takes.
 fn cholesky(a: &mut [f64], n: usize) -> bool {
     let stride = padded(n);
     for k in 0..n {
@@ -393,6 +398,7 @@ fn cholesky(a: &mut [f64], n: usize) -> bool {
         }
         let inverse = 1.0 / pivot.sqrt();
         row[k / LANES * LANES..].iter_mut().for_each(|x| *x *= inverse);
+        row[k] = inverse;
     }
     true
 }
@@ -419,14 +425,15 @@ fn back_substitute(u: &[f64], b: &mut [f64]) {
     for k in 0..n {
         let row = &u[k * stride..][..n];
         let (known, rest) = b.split_at_mut(k + 1);
-        let x = known[k] / row[k];
+        let x = known[k] * row[k];
         known[k] = x;
         rest.iter_mut().zip(&row[k + 1..]).for_each(|(b, u)| *b -= u * x);
     }
     for k in (0..n).rev() {
         let row = &u[k * stride..][..n];
         let (open, known) = b.split_at_mut(k + 1);
-        let value = known.iter().zip(&row[k + 1..]).fold(open[k], |value, (b, u)| value - u * b);
-        open[k] = value / row[k];
+        // What was found last is taken last: a processor sums the rest meanwhile.
+        let value = known.iter().zip(&row[k + 1..]).rev().fold(open[k], |value, (b, u)| value - u * b);
+        open[k] = value * row[k];
     }
 }

@@ -170,11 +170,15 @@ impl SpatialMatrix {
         Self { ma: cross_columns(r, &fa), ml, fa, fl: *g }
     }
 
-    /// The same for two origins, from which the point is at `r_a` and `r_b`: Xₐᵀ G Xₐ, Xₐᵀ G X_b and X_bᵀ G X_b.
+    /// A stiffness between two bodies that is given about B's origin, which is at `d` from A's: with the forces about A's origin
+    /// and the velocities about B's, and with both about A's.
     #[inline]
-    pub fn from_point_of_two(g: &Mat3, r_a: &Vec3, r_b: &Vec3) -> [Self; 3] {
-        let (a, b) = (Self::from_point(g, r_a), Self::from_point(g, r_b));
-        [a, Self { ma: cross_columns(r_a, &b.fa), fa: b.fa, ..a }, b]
+    pub fn about_first(&self, d: &Vec3) -> [Self; 2] {
+        // m_A = m_B + d × f, and v_B = v_A − d × ω.
+        let between = Self { ma: self.ma + cross_columns(d, &self.fa), ml: self.ml + cross_columns(d, &self.fl), ..*self };
+        let turned = |m: &Mat3| cross_columns(d, &m.transpose()).transpose();
+        let own = Self { ma: between.ma + turned(&between.ml), fa: between.fa + turned(&between.fl), ..between };
+        [between, own]
     }
 
     /// Image of a twist.
@@ -267,7 +271,8 @@ mod tests {
         let (r_a, r_b) = (Vec3::new(0.3, -0.7, 1.1), Vec3::new(-0.5, 0.2, 0.9));
         let v = Twist::new(Vec3::new(0.3, 0.1, -0.4), Vec3::new(1.0, 0.2, 0.7));
         let about = |left: &Vec3, right: &Vec3| Wrench::from_force_at(g * v.at(right), left);
-        let [aa, ab, bb] = SpatialMatrix::from_point_of_two(&g, &r_a, &r_b);
+        let bb = SpatialMatrix::from_point(&g, &r_b);
+        let [ab, aa] = bb.about_first(&(r_a - r_b));
         for (matrix, wrench) in [(aa, about(&r_a, &r_a)), (ab, about(&r_a, &r_b)), (bb, about(&r_b, &r_b))] {
             let off = matrix.mul(&v) - wrench;
             assert!(off.moment.norm() + off.force.norm() < ROUND_OFF);
