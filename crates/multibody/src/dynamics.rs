@@ -190,7 +190,14 @@ impl Dynamics {
     }
 
     /// What stiffness adds to them is any symmetric matrix.
-    fn add_stiffened(&mut self, tree: &Tree, kin: &Kinematics, extra: &[Option<SpatialMatrix>], m: &mut [f64], stride: usize) {
+    fn add_stiffened(
+        &mut self,
+        tree: &Tree,
+        kin: &Kinematics,
+        extra: &[Option<SpatialMatrix>],
+        m: &mut [f64],
+        stride: usize,
+    ) {
         for ((composite, inertia), extra) in self.composite.iter_mut().zip(&kin.inertia).zip(extra) {
             *composite = SpatialMatrix::from(inertia);
             if let Some(extra) = extra {
@@ -209,14 +216,7 @@ impl Dynamics {
 
     /// What a joint shares with itself and with all that moves it, when its unit gains take the wrenches `force` of all that hangs on it: its
     /// entries of the upper triangle.
-    fn add_joint_rows(
-        &self,
-        tree: &Tree,
-        kin: &Kinematics,
-        j: usize,
-        m: &mut [f64],
-        (stride, first): (usize, usize),
-    ) {
+    fn add_joint_rows(&self, tree: &Tree, kin: &Kinematics, j: usize, m: &mut [f64], (stride, first): (usize, usize)) {
         let joint = &tree.joints[j];
         for k in 0..joint.width {
             let (row, force) = (first + joint.v_index + k, self.force[k]);
@@ -232,7 +232,8 @@ impl Dynamics {
                 *entry += if row == column { value } else { 0.0 };
             }
             if first == 6 {
-                let base = [force.moment.x, force.moment.y, force.moment.z, force.force.x, force.force.y, force.force.z];
+                let base =
+                    [force.moment.x, force.moment.y, force.moment.z, force.force.x, force.force.y, force.force.z];
                 for (above, value) in m.chunks_exact_mut(stride).zip(base) {
                     above[row] += value;
                 }

@@ -4,8 +4,8 @@
 //!
 //! JᵀGJ within a vehicle is the mass matrix of links whose inertia is increased by S = Σ XᵀGX; between two bodies only
 //! −J_aᵀ S_ab J_b is extra, once per pair of bodies. Vehicles that touch form an island; each island is factored by
-//! itself (UᵀU, upper triangle, row-major: inner loops run along rows and keep one order of addition). Below the diagonal
-//! the matrix is neither written nor read.
+//! itself (Cholesky's method without roots, upper triangle, row-major: inner loops run along rows and keep one order of
+//! addition). Below the diagonal the matrix is neither written nor read.
 
 use crate::contacts::Touch;
 use crate::mechanism::{self, Coupling};
@@ -221,12 +221,17 @@ fn add_between(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: 
     }
 }
 
+/// The six numbers of a wrench, in the order of a base's freedoms.
+#[inline]
+fn numbers(wrench: &Wrench) -> [f64; 6] {
+    let (m, f) = (&wrench.moment, &wrench.force);
+    [m.x, m.y, m.z, f.x, f.y, f.z]
+}
+
 /// Subtracts the six numbers of a wrench from a row, in the columns of a base's freedoms.
 #[inline]
 fn subtract_base(row: &mut [f64], columns: &[usize], seen: &Wrench) {
-    let (m, f) = (&seen.moment, &seen.force);
-    let numbers = [m.x, m.y, m.z, f.x, f.y, f.z];
-    let first = columns[0];
+    let (numbers, first) = (numbers(seen), columns[0]);
     // Of a base that is free the columns follow on each other.
     if first != HELD && columns[5] == first + 5 {
         row[first..first + 6].iter_mut().zip(numbers).for_each(|(x, number)| *x -= number);
@@ -251,8 +256,7 @@ fn add_within(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: &
             *entry -= value;
             *entry -= if row == column { value } else { 0.0 };
         };
-        let (m, f) = (&seen.moment, &seen.force);
-        for (column, value) in rows.iter().zip([m.x, m.y, m.z, f.x, f.y, f.z]).filter(|(c, _)| **c != HELD) {
+        for (column, value) in rows.iter().zip(numbers(seen)).filter(|(c, _)| **c != HELD) {
             entry(*column, value);
         }
         for moves in dynamics.path(lb) {
@@ -270,11 +274,7 @@ fn add_within(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: &
 /// What acts on the base's freedom `k` for a unit of each of the other's.
 fn row_of(matrix: &SpatialMatrix, k: usize) -> Wrench {
     let row = |m: &Mat3| m.row(k % 3).transpose();
-    if k < 3 {
-        Wrench::new(row(&matrix.ma), row(&matrix.ml))
-    } else {
-        Wrench::new(row(&matrix.fa), row(&matrix.fl))
-    }
+    if k < 3 { Wrench::new(row(&matrix.ma), row(&matrix.ml)) } else { Wrench::new(row(&matrix.fa), row(&matrix.fl)) }
 }
 
 /// Joint accelerations of the present state under forces that do not answer to gains, into `v_gain`: bases go by their momentum, and what has
@@ -335,27 +335,26 @@ fn write_rhs(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
     let tau = &mut ws.tau[vehicle.v_range()];
     let base = ws.dynamics[i].collect(&vehicle.tree, &ws.kin[i], tau);
     let islands = &mut ws.islands;
-    let rhs = &mut islands.rhs[islands.group[i]];
-    for (k, &row) in islands.rows[i].iter().enumerate().filter(|(_, r)| **r != HELD) {
-        rhs[row] = match k {
-            0..3 => -h * base.moment[k],
-            3..6 => -h * base.force[k - 3],
-            _ => h * (ws.coordinate_lines[vehicle.v0 + k - 6].0 - tau[k - 6]),
-        };
+    let (rhs, rows) = (&mut islands.rhs[islands.group[i]], &islands.rows[i]);
+    for (&row, number) in rows.iter().zip(numbers(&base)).filter(|(row, _)| **row != HELD) {
+        rhs[row] = -h * number;
+    }
+    let range = vehicle.v_range();
+    for ((&row, line), tau) in rows[6..].iter().zip(&ws.coordinate_lines[range.clone()]).zip(&ws.tau[range]) {
+        rhs[row] = h * (line.0 - tau);
     }
 }
 
 fn read_gains(model: &Model, ws: &mut Workspace, i: usize) {
     let vehicle = &model.vehicles[i];
-    let islands = &ws.islands;
-    let rhs = &islands.rhs[islands.group[i]];
-    let gain = |k: usize| if islands.rows[i][k] == HELD { 0.0 } else { rhs[islands.rows[i][k]] };
+    let (rhs, rows) = (&ws.islands.rhs[ws.islands.group[i]], &ws.islands.rows[i]);
+    let gain = |k: usize| if rows[k] == HELD { 0.0 } else { rhs[rows[k]] };
     let mut base = Twist::new(Vec3::new(gain(0), gain(1), gain(2)), Vec3::new(gain(3), gain(4), gain(5)));
     if vehicle.base.is_held() {
         base = ws.drive_gain[i];
     }
-    for k in 0..vehicle.tree.nv {
-        ws.v_gain[vehicle.v0 + k] = gain(6 + k);
+    for (v, &row) in ws.v_gain[vehicle.v_range()].iter_mut().zip(&rows[6..]) {
+        *v = rhs[row];
     }
     ws.base_gain[i] = base;
     ws.dvel[vehicle.body0] = base;
@@ -378,7 +377,8 @@ fn padded(n: usize) -> usize {
     n.next_multiple_of(LANES)
 }
 
-/// A = UᵀU in place, upper triangle, `n` rows of `padded(n)`; on the diagonal 1/u, since that is what solving takes.
+/// A = WᵀP⁻¹W in place: W upper triangular, P its diagonal of pivots, of which the inverse is left there; `n` rows of
+/// `padded(n)`. (Of UᵀU, U = P^−½ W: here no root stands between a row and the next.)
 fn cholesky(a: &mut [f64], n: usize) -> bool {
     let stride = padded(n);
     for k in 0..n {
@@ -396,9 +396,7 @@ fn cholesky(a: &mut [f64], n: usize) -> bool {
         if pivot.is_nan() || pivot <= 0.0 {
             return false;
         }
-        let inverse = 1.0 / pivot.sqrt();
-        row[k / LANES * LANES..].iter_mut().for_each(|x| *x *= inverse);
-        row[k] = inverse;
+        row[k] = 1.0 / pivot;
     }
     true
 }
@@ -409,8 +407,8 @@ fn subtract_rows<const W: usize>(above: &[f64], row: &mut [f64], k: usize, at: u
     let stride = row.len();
     let Some(own) = row[at..].first_chunk_mut::<W>() else { return W };
     let mut sum = *own;
-    for u in above.chunks_exact(stride) {
-        let (factor, Some(y)) = (u[k], u[at..].first_chunk::<W>()) else { break };
+    for (i, u) in above.chunks_exact(stride).enumerate() {
+        let (factor, Some(y)) = (u[i] * u[k], u[at..].first_chunk::<W>()) else { break };
         for (s, y) in sum.iter_mut().zip(y) {
             *s -= factor * y;
         }
@@ -419,14 +417,13 @@ fn subtract_rows<const W: usize>(above: &[f64], row: &mut [f64], k: usize, at: u
     W
 }
 
-/// x with UᵀU x = b, in place.
+/// x with WᵀP⁻¹W x = b, in place, from what [`cholesky`] left.
 fn back_substitute(u: &[f64], b: &mut [f64]) {
     let (n, stride) = (b.len(), padded(b.len()));
     for k in 0..n {
         let row = &u[k * stride..][..n];
         let (known, rest) = b.split_at_mut(k + 1);
         let x = known[k] * row[k];
-        known[k] = x;
         rest.iter_mut().zip(&row[k + 1..]).for_each(|(b, u)| *b -= u * x);
     }
     for k in (0..n).rev() {
