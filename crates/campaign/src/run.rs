@@ -47,8 +47,13 @@ pub fn make(plan: &Plan, run: u64, keep: Keep) -> Finished {
 }
 
 fn attempt(plan: &Plan, run: u64, keep: Keep, started: Instant) -> Finished {
-    let built = plan.scenario_of(run).and_then(|(s, drawn)| Ok((plan.build(&s)?, drawn)));
-    let (mut mission, drawn) = match built {
+    let built = plan.scenario_of(run).and_then(|(s, drawn)| {
+        let mission = plan.build(&s)?;
+        scenario::check_start(&mission)?;
+        let recorder = (keep != Keep::Nothing).then(|| recorder_of(plan, &mission, keep)).transpose()?;
+        Ok((mission, drawn, recorder))
+    });
+    let (mut mission, drawn, mut recorder) = match built {
         Ok(built) => built,
         Err(error) => {
             let row = failed(plan, run, "unbuildable", one_line(&error));
@@ -56,7 +61,6 @@ fn attempt(plan: &Plan, run: u64, keep: Keep, started: Instant) -> Finished {
         }
     };
     let applied = plan.read_back(&mission);
-    let mut recorder = (keep != Keep::Nothing).then(|| recorder_of(plan, &mission, keep));
     let mut judge = Judge::new(&mission);
     let before = started.elapsed().as_secs_f64();
     let ended = {
@@ -70,14 +74,14 @@ fn attempt(plan: &Plan, run: u64, keep: Keep, started: Instant) -> Finished {
     Finished { row, log, wall_s: [0.0, before] }
 }
 
-fn recorder_of(plan: &Plan, mission: &Mission, keep: Keep) -> Recorder<'static> {
-    let mut recording = recorder_plan(mission, &scene(mission));
+fn recorder_of(plan: &Plan, mission: &Mission, keep: Keep) -> Result<Recorder<'static>, CampaignError> {
+    let mut recording = recorder_plan(mission, &scene(mission))?;
     if keep == Keep::Signals {
         let patterns = plan.campaign.signals.clone();
         recording.keep = Box::new(move |name| patterns.iter().any(|p| glob_matches(p, name)));
         recording.links = Vec::new();
     }
-    Recorder::new(&mission.world, recording, None)
+    Ok(Recorder::new(&mission.world, recording, None))
 }
 
 fn with_events(mut log: Log, outcome: &Outcome, ended: &Result<(), StepError>) -> Log {

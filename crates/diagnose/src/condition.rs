@@ -128,10 +128,16 @@ fn line<'a>(points: impl Iterator<Item = &'a Point> + Clone) -> (f64, f64, f64) 
 fn features(tape: &Tape, span: Span) -> Vec<(String, f64)> {
     let mut all = vec![("time".to_owned(), 0.5 * (span.from + span.to) - tape.span.0)];
     for reading in &tape.readings {
-        let is_place = matches!(reading.quantity, Quantity::Position(..) | Quantity::JointPosition(_));
+        let is_place = matches!(
+            reading.quantity,
+            Quantity::Position(..) | Quantity::JointPosition(_) | Quantity::JointLinkPosition(_)
+        );
         let is_rate = matches!(
             reading.quantity,
-            Quantity::LinearVelocity(..) | Quantity::AngularVelocity(..) | Quantity::JointVelocity(_)
+            Quantity::LinearVelocity(..)
+                | Quantity::AngularVelocity(..)
+                | Quantity::JointVelocity(_)
+                | Quantity::JointLinkVelocity(_)
         );
         if !is_place && !is_rate {
             continue;

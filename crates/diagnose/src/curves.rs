@@ -64,7 +64,13 @@ pub(crate) fn curves(findings: &Findings, stage: &Stage<'_>) -> Vec<Curve> {
 fn unit_of_channel(model: &Model, quantity: Quantity, channel: &str) -> &'static str {
     let unit = ChannelName::parse(channel).map_or("", |name| name.quantity.unit());
     let Some((turning, sliding)) = unit.split_once('|') else { return unit };
-    let (Quantity::JointPosition(v) | Quantity::JointVelocity(v)) = quantity else { return unit };
+    let (Quantity::JointPosition(v)
+    | Quantity::JointVelocity(v)
+    | Quantity::JointLinkPosition(v)
+    | Quantity::JointLinkVelocity(v)) = quantity
+    else {
+        return unit;
+    };
     let mut joints =
         model.vehicles.iter().flat_map(|vehicle| vehicle.tree.joints.iter().map(|j| (vehicle.v0 + j.v_index, j)));
     match joints.find(|(at, joint)| *at == v && !joint.is_mimic) {

@@ -28,16 +28,20 @@ pub fn guess(built: &Built, tape: &Tape, time: f64) -> Start {
         start.bases[v] = guided(&start.bases[v], &nominal, &mask);
         mask_twist(&mut start.twists[v], &mask);
     }
+    let is_read = |quantity: Quantity| tape.readings.iter().any(|r| r.quantity == quantity);
     for reading in &tape.readings {
         match reading.quantity {
-            Quantity::JointPosition(v) => {
+            // The state has the link side; the motor side stands for it where nothing else is read.
+            Quantity::JointPosition(v) if is_read(Quantity::JointLinkPosition(v)) => {}
+            Quantity::JointVelocity(v) if is_read(Quantity::JointLinkVelocity(v)) => {}
+            Quantity::JointPosition(v) | Quantity::JointLinkPosition(v) => {
                 let (x, rate) = fit_vector(reading, time);
                 start.q[built.model.coordinates[v].q_index] = x.x;
-                if !tape.readings.iter().any(|r| r.quantity == Quantity::JointVelocity(v)) {
+                if ![Quantity::JointVelocity(v), Quantity::JointLinkVelocity(v)].into_iter().any(is_read) {
                     start.v[v] = rate.x;
                 }
             }
-            Quantity::JointVelocity(v) => start.v[v] = fit_vector(reading, time).0.x,
+            Quantity::JointVelocity(v) | Quantity::JointLinkVelocity(v) => start.v[v] = fit_vector(reading, time).0.x,
             _ => {}
         }
     }

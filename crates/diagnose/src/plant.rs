@@ -4,8 +4,8 @@ use crate::error::DiagnoseError;
 use record::{RecordedRun, RecordingSet};
 use scenario::measure::{Gauge, MeasureError, Mount, Quantity, SensorModel};
 use scenario::spec::{Effect, ParamValue};
-use scenario::{Scenario, Stock};
-use sim::{Actuator, ActuatorKind, DriveAxis, DrivePath, Model, State};
+use scenario::{DriveChannel, Scenario, Stock};
+use sim::{Actuator, ActuatorKind, DrivePath, Model, State};
 use std::sync::{Arc, OnceLock};
 
 /// A scenario whose `[[effect]]` entries are varied, with what the recording says about it.
@@ -32,6 +32,8 @@ pub struct Built {
     pub start: State,
     /// What each channel reads, and the faults of its sensor.
     pub sensors: Vec<(String, Gauge, SensorModel)>,
+    /// The driven coordinates' channels.
+    pub drives: Vec<DriveChannel>,
     /// Elastic mounts.
     pub mounts: Vec<Mount>,
     /// Longest delay of an actuator, s.
@@ -45,13 +47,16 @@ impl Plant {
     }
 
     /// Takes channels and drive paths of a recording.
-    pub fn attach(&mut self, set: &RecordingSet, model: &Model, channels: Vec<String>) -> Result<(), DiagnoseError> {
+    ///
+    /// A drive moves as the run's recording of it says; one that the scenario gives a motion may go unrecorded.
+    pub fn attach(&mut self, set: &RecordingSet, built: &Built, channels: Vec<String>) -> Result<(), DiagnoseError> {
         self.channels = channels;
-        if model.drives.is_empty() {
+        if built.drives.is_empty() {
             return Ok(());
         }
+        let own = || built.model.drives.iter().flat_map(|d| d.paths.iter().map(|(_, path)| path));
         let of_run = |run: &RecordedRun| -> Result<Vec<Arc<DrivePath>>, DiagnoseError> {
-            model.driven_coordinates().map(|(name, axis)| drive_path(set, run, name, axis)).collect()
+            built.drives.iter().zip(own()).map(|(drive, path)| drive_path(set, run, (drive, path))).collect()
         };
         self.drives = set.runs.iter().map(of_run).collect::<Result<_, _>>()?;
         Ok(())
@@ -100,13 +105,14 @@ impl Plant {
         let delays = late.filter_map(|e| e.params.get("delay").and_then(ParamValue::number));
         let sensor = |channel: &String| {
             let gauge = Gauge::resolve(&scenario, &model, channel).ok()?;
-            Some((channel.clone(), gauge, SensorModel::of(&scenario.effects, channel)))
+            Some((channel.clone(), gauge, SensorModel::of(&scenario.effects, &model, channel)))
         };
         Ok(Built {
             by_run: self.drives.iter().map(|paths| Arc::new(model.with_drive_paths(paths.iter().cloned()))).collect(),
             start: mission.world.state().clone(),
             sensors: self.channels.iter().filter_map(sensor).collect(),
             mounts: Mount::all(&model),
+            drives: mission.drives,
             delay: delays.fold(0.0, f64::max),
             model,
         })
@@ -117,23 +123,16 @@ impl Plant {
 fn drive_path(
     set: &RecordingSet,
     run: &RecordedRun,
-    name: &str,
-    axis: DriveAxis,
+    (drive, own): (&DriveChannel, &Arc<DrivePath>),
 ) -> Result<Arc<DrivePath>, DiagnoseError> {
-    let component = match axis {
-        DriveAxis::X => "position.x",
-        DriveAxis::Y => "position.y",
-        DriveAxis::Z => "position.z",
-        DriveAxis::AboutZ => "angle",
+    let channel = &drive.channel;
+    let Some(series) = run.series(channel) else {
+        let reason = "is missing, and it is what moves the drive; record it, or map its column".to_owned();
+        let missing = DiagnoseError::Channel { channel: channel.clone(), file: run.file.clone(), reason };
+        return if drive.awaits_recording { Err(missing) } else { Ok(Arc::clone(own)) };
     };
-    let channel = format!("drive.{name}.{component}");
-    let series = run.series(&channel).ok_or_else(|| DiagnoseError::Channel {
-        channel: channel.clone(),
-        file: run.file.clone(),
-        reason: "is missing, and it is what moves the drive; record it, or map its column".to_owned(),
-    })?;
     let quantum = series.quantum();
-    let noise = set.sigma(&channel).map(|s| (s * s + quantum * quantum / 12.0).sqrt());
+    let noise = set.sigma(channel).or(drive.noise).map(|s| (s * s + quantum * quantum / 12.0).sqrt());
     Ok(Arc::new(DrivePath::smoothed(&series.times, &series.values, noise)))
 }
 

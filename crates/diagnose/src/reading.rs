@@ -56,7 +56,7 @@ impl Reading {
     /// Name of one component: `sensor.probe.force.x`.
     pub fn component(&self, k: usize) -> String {
         match self.quantity {
-            Quantity::JointPosition(_) | Quantity::JointVelocity(_) => self.channel.clone(),
+            quantity if quantity.is_joint() => self.channel.clone(),
             _ => format!("{}.{}", self.channel, ["x", "y", "z"][self.axes[k]]),
         }
     }

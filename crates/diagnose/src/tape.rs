@@ -134,12 +134,13 @@ impl Tape {
 
 /// The runs and the nominal model, the plant told what is read and driven.
 pub(crate) fn load(plant: &mut Plant, set: &RecordingSet) -> Result<(Vec<Tape>, Built), DiagnoseError> {
-    let model = plant.build(&[])?.model;
-    let tapes: Vec<Tape> = set.runs.iter().map(|run| Tape::new(set, run, plant, &model)).collect::<Result<_, _>>()?;
+    let built = plant.build(&[])?;
+    let tapes: Vec<Tape> =
+        set.runs.iter().map(|run| Tape::new(set, run, plant, &built.model)).collect::<Result<_, _>>()?;
     let mut channels: Vec<String> = tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.channel.clone())).collect();
     channels.sort();
     channels.dedup();
-    plant.attach(set, &model, channels)?;
+    plant.attach(set, &built, channels)?;
     for tape in &tapes {
         if let Some(reading) = tape.readings.iter().find(|r| r.sigma <= 0.0) {
             return Err(DiagnoseError::Channel {

@@ -1,7 +1,6 @@
 //! What every law is asked and what it answers.
 
 use nalgebra::{Matrix3, Vector3};
-use serde::{Deserialize, Serialize};
 
 /// A parameter out of its range.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,16 +36,6 @@ fn refuse(all: &[(&'static str, f64)], must_be: &'static str, fits: impl Fn(f64)
         Some(&(parameter, value)) => Err(FrictionError { parameter, value, must_be }),
         None => Ok(()),
     }
-}
-
-/// How a deflection that the normal force does not hold comes back where the levels differ across a grain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Return {
-    /// To the nearest point of the ellipse: slip normal to it, the most dissipation.
-    #[default]
-    Nearest,
-    /// Shortened along itself: in steady sliding the force opposes the velocity.
-    Radial,
 }
 
 /// What one evaluation needs. All vectors lie in the tangent plane, in any axes.

@@ -12,7 +12,8 @@
 //! | planar | x, y, θ in the plane normal to the axis | vx, vy in the child's axes, θ̇ |
 //!
 //! A mimic joint has no coordinate of its own: it reads its leader's, and its screw is scaled by the multiplier, so
-//! that velocities, forces and inertias fold into the leader's coordinate by themselves.
+//! that velocities, forces and inertias fold into the leader's coordinate by themselves; its limits, damping and friction
+//! are laid on the leader's ([`crate::followers`]).
 
 use crate::{JointDescription, JointKind, RobotDescription};
 use nalgebra::{Quaternion, UnitQuaternion};
@@ -35,6 +36,17 @@ pub struct Tree {
     pub nv: usize,
     /// Configuration where every joint is at zero.
     pub q_zero: Vec<f64>,
+    /// Point masses that [`Tree::add_sliding_point`] has added.
+    pub sliding_points: Vec<SlidingPoint>,
+}
+
+/// A point mass that slides along the axes of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SlidingPoint {
+    /// The first of its three joints: along x; those along y and z follow.
+    pub joint: usize,
+    /// Its link.
+    pub link: usize,
 }
 
 /// A moving body: a link and all that is fixed to it.
@@ -86,15 +98,15 @@ pub struct Joint {
     pub offset: f64,
     /// Whether it follows another joint.
     pub is_mimic: bool,
-    /// Stops, rad or m.
+    /// Stops, rad or m; a leader's are narrowed to where its followers stay within theirs.
     pub position_limits: Option<[f64; 2]>,
     /// Largest effort, N·m or N.
     pub effort_limit: f64,
-    /// Largest speed, rad/s or m/s.
+    /// Largest speed, rad/s or m/s; a leader's is the least that it or a follower allows.
     pub velocity_limit: f64,
-    /// Viscous friction, N·m·s/rad or N·s/m.
+    /// Viscous friction, N·m·s/rad or N·s/m; a leader's with that of its followers.
     pub damping: f64,
-    /// Dry friction level, N·m or N.
+    /// Dry friction level, N·m or N; a leader's with that of its followers.
     pub friction: f64,
     /// Inertia that belongs to the coordinate and to no body, kg·m² or kg: a geared drive's rotor, reflected to the
     /// joint, its gyroscopic terms neglected. It adds to the diagonal of the mass matrix and is no part of the momentum.
@@ -122,6 +134,7 @@ impl Tree {
             nq: 0,
             nv: 0,
             q_zero: Vec::new(),
+            sliding_points: Vec::new(),
         };
         let mut joint_of_description = vec![usize::MAX; robot.joints.len()];
         for (i, link) in robot.links.iter().enumerate() {
@@ -142,6 +155,7 @@ impl Tree {
             tree.links.push(Link { name: link.name.clone(), body, frame_bl, inertia });
         }
         tree.number_coordinates(robot, &joint_of_description);
+        tree.load_leaders();
         tree
     }
 
@@ -257,7 +271,13 @@ impl Tree {
         }
         let inertia = self.bodies[parent].inertia;
         self.links.push(Link { name: name.to_owned(), body: parent, frame_bl: Frame::identity(), inertia });
+        self.sliding_points.push(SlidingPoint { joint: first, link: self.links.len() - 1 });
         first
+    }
+
+    /// The sliding point whose mass is a body.
+    pub fn sliding_point(&self, body: usize) -> Option<SlidingPoint> {
+        self.sliding_points.iter().copied().find(|point| self.links[point.link].body == body)
     }
 
     /// Number of screws: joint freedoms, mimic joints counted.

@@ -37,7 +37,7 @@ pub use error::RecordError;
 pub use folder::{OutputFolder, SUMMARY_FORMAT, write_file};
 pub use log::{ContactSample, Event, EventKind, Log, Meta, Sample};
 pub use mesh::{TriangleMesh, docking_of_geometry, triangulate};
-pub use observe::{Probe, Recorder, RecorderPlan, SampleSink};
+pub use observe::{Function, Probe, Recorder, RecorderPlan, SampleSink, standard_channels};
 pub use parquet_file::{SIGNALS_FORMAT, encode_parquet, read_parquet, write_parquet};
 pub use recording::{ChannelName, Quantity, RecordedRun, RecordingSet, Remark, Role, Series, Severity, units};
 pub use scene::{Scene, SceneLink, SceneVehicle, Trail};

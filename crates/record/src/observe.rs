@@ -3,28 +3,46 @@
 //! | channel | unit |
 //! | --- | --- |
 //! | `body.<vehicle>.position.{x,y,z}`, `.orientation.{w,x,y,z}`, `.linear_velocity`, `.angular_velocity` (body axes) | m, 1, m/s, rad/s |
-//! | `joint.<vehicle>/<joint>.position`, `.velocity`, `.effort` | rad or m, … |
+//! | `joint.<vehicle>/<joint>.position`, `.velocity`, `.effort` | rad or m, …: encoder and tachometer, on the motor's side of a gear |
+//! | `joint.<vehicle>/<joint>.link_position`, `.link_velocity` of joints whose gear yields or has play | the link's side |
 //! | `actuator.<name>.command` | position, or effort |
+//! | `drive.<name>.position.{x,y,z}`, `.angle`, those that are driven | m, rad |
 //! | `contact.<a>.<b>.normal_force`, `.friction_force`, `.points`, `.sliding` by pair of vehicles | N, 1 |
 //! | `momentum.*`, `energy.*` of all vehicles together | |
 //! | `mechanism.*` | see `mechanisms` |
 
 use crate::{ChannelSpec, ContactSample, Log, Meta, Plot, RecordError, Sample};
 use multibody::JointKind;
-use sim::{ActuatorKind, Energy, Flow, Model, MomentumAudit, Observer, World};
+use sim::{ActuatorKind, DriveAxis, Energy, EnergyAudit, EnergyBalance, Flow, Model, MomentumAudit, Observer, World};
 use spatial::{Pose, Vec3};
 
-/// A further channel: a function of the world.
-pub struct Probe {
+/// Further channels. Those that have the name of a standard channel take its place: what a sensor makes of it.
+pub trait Probe {
+    /// What they are.
+    fn channels(&self) -> Vec<ChannelSpec>;
+
+    /// Looks at the world before the first step and after each; for sensors, which sample and wait.
+    fn observe(&mut self, _: &World) {}
+
+    /// Appends their present values; NaN where nothing was sampled since the last call.
+    fn read(&mut self, world: &World, values: &mut Vec<f64>);
+}
+
+/// A channel that is a function of the world.
+pub struct Function<F> {
     /// What it is.
     pub spec: ChannelSpec,
     /// Its value.
-    pub read: Box<dyn Fn(&World) -> f64 + Send + Sync>,
+    pub read: F,
 }
 
-impl std::fmt::Debug for Probe {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        self.spec.fmt(f)
+impl<F: Fn(&World) -> f64> Probe for Function<F> {
+    fn channels(&self) -> Vec<ChannelSpec> {
+        vec![self.spec.clone()]
+    }
+
+    fn read(&mut self, world: &World, values: &mut Vec<f64>) {
+        values.push((self.read)(world));
     }
 }
 
@@ -40,10 +58,14 @@ pub struct Recorder<'a> {
     pub log: Log,
     /// The first error that a sample met; it ends the run.
     pub error: Option<RecordError>,
-    probes: Vec<Probe>,
+    probes: Vec<Box<dyn Probe + Send>>,
+    /// Where the probes' values stand among the channels.
+    places: Vec<usize>,
     keep: Vec<bool>,
+    links: Vec<usize>,
     every: u64,
     audit: Option<MomentumAudit>,
+    energy: EnergyAudit,
     vehicle_pairs: Vec<(Option<usize>, Option<usize>)>,
     live: Option<&'a mut dyn SampleSink>,
     scratch: Scratch,
@@ -52,6 +74,7 @@ pub struct Recorder<'a> {
 #[derive(Debug, Default)]
 struct Scratch {
     all: Vec<f64>,
+    probed: Vec<f64>,
     kept: Vec<f64>,
     poses: Vec<Pose>,
     contacts: Vec<ContactSample>,
@@ -70,7 +93,7 @@ pub struct RecorderPlan {
     /// Steps between two samples.
     pub every: u64,
     /// Further channels, after the standard ones.
-    pub probes: Vec<Probe>,
+    pub probes: Vec<Box<dyn Probe + Send>>,
     /// Which channels are kept.
     pub keep: Box<dyn Fn(&str) -> bool>,
     /// Number of links of each vehicle that the scene shows (rotors are not shown).
@@ -86,15 +109,25 @@ impl std::fmt::Debug for RecorderPlan {
 impl RecorderPlan {
     /// The channels that are kept.
     pub fn calc_channels(&self, model: &Model) -> Vec<ChannelSpec> {
-        let mut specs = self.calc_all_channels(model);
+        let (mut specs, _) = self.calc_all_channels(model);
         specs.retain(|s| (self.keep)(&s.name));
         specs
     }
 
-    fn calc_all_channels(&self, model: &Model) -> Vec<ChannelSpec> {
-        let mut specs = standard_channels(model, &vehicle_pairs(model));
-        specs.extend(self.probes.iter().map(|p| p.spec.clone()));
-        specs
+    /// All channels, and where those of the probes stand among them.
+    fn calc_all_channels(&self, model: &Model) -> (Vec<ChannelSpec>, Vec<usize>) {
+        let mut specs = standard_channels(model);
+        let mut places = Vec::new();
+        for spec in self.probes.iter().flat_map(|p| p.channels()) {
+            let at = specs.iter().position(|s| s.name == spec.name).unwrap_or(specs.len());
+            if at < specs.len() {
+                specs[at] = spec
+            } else {
+                specs.push(spec)
+            }
+            places.push(at);
+        }
+        (specs, places)
     }
 }
 
@@ -102,7 +135,8 @@ impl<'a> Recorder<'a> {
     /// A recorder for a world at its start, which also feeds `live`.
     pub fn new(world: &World, plan: RecorderPlan, live: Option<&'a mut dyn SampleSink>) -> Self {
         let vehicle_pairs = vehicle_pairs(world.model());
-        let keep: Vec<bool> = plan.calc_all_channels(world.model()).iter().map(|s| (plan.keep)(&s.name)).collect();
+        let (all, places) = plan.calc_all_channels(world.model());
+        let keep: Vec<bool> = all.iter().map(|s| (plan.keep)(&s.name)).collect();
         let kept = plan.calc_channels(world.model());
         let mut log = Log::new(plan.meta, kept, plan.links.iter().sum());
         log.pairs = (0..world.model().scene.pairs().len()).map(|p| world.model().pair_name(p)).collect();
@@ -110,9 +144,12 @@ impl<'a> Recorder<'a> {
             log,
             error: None,
             probes: plan.probes,
+            places,
             keep,
+            links: plan.links.clone(),
             every: plan.every.max(1),
             audit: MomentumAudit::applies(world).then(|| MomentumAudit::new(world)),
+            energy: EnergyAudit::new(world),
             vehicle_pairs,
             live,
             scratch: Scratch { poses: Vec::with_capacity(plan.links.iter().sum()), ..Scratch::default() },
@@ -127,14 +164,18 @@ impl<'a> Recorder<'a> {
         values.clear();
         write_bodies(world, &mut values);
         write_joints(world, &mut values);
+        write_drives(world, &mut values);
         write_contacts(world, &self.vehicle_pairs, &mut values);
-        write_accounts(world, self.audit.as_ref(), &mut values);
+        write_accounts(world, self.audit.as_ref(), &self.energy.close(world), &mut values);
         crate::mechanisms::write(world, &mut values);
-        values.extend(self.probes.iter().map(|p| (p.read)(world)));
-        let Scratch { kept, poses, contacts, .. } = &mut self.scratch;
+        let Scratch { probed, kept, poses, contacts, .. } = &mut self.scratch;
+        probed.clear();
+        self.probes.iter_mut().for_each(|p| p.read(world, probed));
+        values.resize(self.keep.len(), f64::NAN);
+        self.places.iter().zip(&*probed).for_each(|(at, value)| values[*at] = *value);
         kept.clear();
         kept.extend(values.iter().zip(&self.keep).filter(|(_, k)| **k).map(|(v, _)| *v));
-        write_poses(world, self.log.link_count(), poses);
+        write_poses(world, &self.links, poses);
         write_contact_samples(world, contacts);
         let sample =
             Sample { t: world.state().time, step: world.state().steps, values: kept, poses_w: poses, contacts };
@@ -149,6 +190,7 @@ impl<'a> Recorder<'a> {
 
 impl Observer for Recorder<'_> {
     fn observe(&mut self, world: &World) -> Flow {
+        self.probes.iter_mut().for_each(|p| p.observe(world));
         if world.state().steps.is_multiple_of(self.every)
             && let Err(error) = self.sample(world)
         {
@@ -177,7 +219,9 @@ fn owners(model: &Model, pair: usize) -> (Option<usize>, Option<usize>) {
     (owner(a), owner(b))
 }
 
-fn standard_channels(model: &Model, pairs: &[(Option<usize>, Option<usize>)]) -> Vec<ChannelSpec> {
+/// The channels that every recording of a model has.
+pub fn standard_channels(model: &Model) -> Vec<ChannelSpec> {
+    let pairs = vehicle_pairs(model);
     let mut specs = Vec::new();
     let mut add = |name: String, unit: &str, plot: Plot, text: &str| {
         specs.push(ChannelSpec::new(name, unit, plot).described(text));
@@ -195,19 +239,30 @@ fn standard_channels(model: &Model, pairs: &[(Option<usize>, Option<usize>)]) ->
         for joint in vehicle.tree.joints.iter().filter(|j| !j.is_mimic && j.width == 1) {
             let linear = joint.kind == JointKind::Prismatic;
             let units = if linear { ["m", "m/s", "N"] } else { ["rad", "rad/s", "N·m"] };
-            for (quantity, unit) in ["position", "velocity", "effort"].into_iter().zip(units) {
-                add(format!("joint.{}/{}.{quantity}", vehicle.name, joint.name), unit, Plot::Joints, "");
+            let mut channel = |quantity: &str, unit: &str, text: &str| {
+                add(format!("joint.{}/{}.{quantity}", vehicle.name, joint.name), unit, Plot::Joints, text);
+            };
+            let quantities = [("position", "encoder"), ("velocity", "tachometer"), ("effort", "")];
+            quantities.into_iter().zip(units).for_each(|((quantity, text), unit)| channel(quantity, unit, text));
+            if model.has_gear(vehicle.v0 + joint.v_index) {
+                channel("link_position", units[0], "behind the gear");
+                channel("link_velocity", units[1], "behind the gear");
             }
         }
     }
     for actuator in &model.actuators {
-        let unit = match actuator.kind {
-            ActuatorKind::JointDrive { .. } => "rad or m",
-            _ => "N or N·m",
-        };
-        add(format!("actuator.{}.command", actuator.name), unit, Plot::Actuators, "");
+        add(format!("actuator.{}.command", actuator.name), unit_of_command(model, &actuator.kind), Plot::Actuators, "");
     }
-    for (a, b) in pairs {
+    for (name, axis) in model.driven_coordinates() {
+        let (quantity, unit) = match axis {
+            DriveAxis::X => ("position.x", "m"),
+            DriveAxis::Y => ("position.y", "m"),
+            DriveAxis::Z => ("position.z", "m"),
+            DriveAxis::AboutZ => ("angle", "rad"),
+        };
+        add(format!("drive.{name}.{quantity}"), unit, Plot::Actuators, "in the axes of the drive's frame");
+    }
+    for (a, b) in &pairs {
         let name = |v: &Option<usize>| v.map_or("world", |v| model.vehicles[v].name.as_str()).to_owned();
         let prefix = format!("contact.{}.{}", name(a), name(b));
         add(format!("{prefix}.normal_force"), "N", Plot::Contact, "sum of the points' normal forces");
@@ -220,11 +275,28 @@ fn standard_channels(model: &Model, pairs: &[(Option<usize>, Option<usize>)]) ->
     for (quantity, text) in [("kinetic", ""), ("potential", ""), ("elastic", "stored in contacts")] {
         add(format!("energy.{quantity}"), "J", Plot::Energy, text);
     }
-    for quantity in ["actuator_work", "contact_work", "joint_loss"] {
+    for quantity in ["actuator_work", "contact_work", "contact_loss", "joint_loss", "numerical_loss"] {
         add(format!("energy.{quantity}"), "J", Plot::Energy, "sum since the start");
     }
     specs.extend(crate::mechanisms::channels(model));
     specs
+}
+
+/// Unit of what an actuator is commanded: by its kind, and by whether its joint turns or slides.
+fn unit_of_command(model: &Model, kind: &ActuatorKind) -> &'static str {
+    let slides = |coordinate: usize| {
+        let vehicle = model.vehicles.iter().find(|v| v.v_range().contains(&coordinate));
+        let joint = vehicle.and_then(|v| v.tree.joints.iter().find(|j| !j.is_mimic && v.v0 + j.v_index == coordinate));
+        joint.is_some_and(|j| j.kind == JointKind::Prismatic)
+    };
+    let of = |coordinate, [turning, sliding]: [&'static str; 2]| if slides(coordinate) { sliding } else { turning };
+    match *kind {
+        ActuatorKind::JointEffort { coordinate, .. } => of(coordinate, ["N·m", "N"]),
+        ActuatorKind::JointDrive { coordinate, stiffness, .. } if stiffness > 0.0 => of(coordinate, ["rad", "m"]),
+        ActuatorKind::JointDrive { coordinate, .. } => of(coordinate, ["rad/s", "m/s"]),
+        ActuatorKind::Thruster { .. } => "N",
+        ActuatorKind::LatchRelease { .. } => "1",
+    }
 }
 
 fn write_bodies(world: &World, values: &mut Vec<f64>) {
@@ -242,7 +314,11 @@ fn write_joints(world: &World, values: &mut Vec<f64>) {
     for vehicle in &world.model().vehicles {
         for joint in vehicle.tree.joints.iter().filter(|j| !j.is_mimic && j.width == 1) {
             let v = vehicle.v0 + joint.v_index;
-            values.extend([state.q[vehicle.q0 + joint.q_index], state.v[v], world.effort(v)]);
+            let (position, velocity) = world.motor_side(v);
+            values.extend([position, velocity, world.effort(v)]);
+            if world.model().has_gear(v) {
+                values.extend([state.q[vehicle.q0 + joint.q_index], state.v[v]]);
+            }
         }
     }
     for (actuator, command) in world.model().actuators.iter().zip(&state.commands) {
@@ -251,6 +327,13 @@ fn write_joints(world: &World, values: &mut Vec<f64>) {
             ActuatorKind::JointDrive { .. } => command.velocity,
             _ => command.effort,
         });
+    }
+}
+
+fn write_drives(world: &World, values: &mut Vec<f64>) {
+    let now = world.state().time;
+    for drive in &world.model().drives {
+        values.extend(drive.paths.iter().map(|(_, path)| path.eval(now).position));
     }
 }
 
@@ -268,26 +351,20 @@ fn write_contacts(world: &World, pairs: &[(Option<usize>, Option<usize>)], value
     }
 }
 
-fn write_accounts(world: &World, audit: Option<&MomentumAudit>, values: &mut Vec<f64>) {
-    let (energy, account) = (Energy::of(world), world.state().account);
+fn write_accounts(world: &World, audit: Option<&MomentumAudit>, balance: &EnergyBalance, values: &mut Vec<f64>) {
+    let (energy, contact_work) = (Energy::of(world), world.state().account.contact_work);
     values.extend(audit.map_or([f64::NAN; 2], |a| [a.linear_drift, a.angular_drift]));
     values.extend([energy.kinetic, energy.potential, energy.elastic]);
-    values.extend([account.actuator_work, account.contact_work, account.passive_joint_work]);
+    let EnergyBalance { actuator_work, contact_loss, joint_loss, numerical_loss, .. } = *balance;
+    values.extend([actuator_work, contact_work, contact_loss, joint_loss, numerical_loss]);
 }
 
-fn write_poses(world: &World, links: usize, poses: &mut Vec<Pose>) {
+/// Rotors and tips of mounts come after the links of the file; the scene does not show them.
+fn write_poses(world: &World, links: &[usize], poses: &mut Vec<Pose>) {
     poses.clear();
-    for (v, vehicle) in world.model().vehicles.iter().enumerate() {
-        // Rotors come after the links of the file; the scene does not show them.
-        let rotors = vehicle.tree.links.iter().rev().take_while(|l| is_rotor(l)).count();
-        let shown = vehicle.tree.links.len() - rotors;
-        poses.extend((0..shown).map(|l| world.link_frame(v, l).to_pose()));
+    for (v, shown) in links.iter().enumerate() {
+        poses.extend((0..*shown).map(|l| world.link_frame(v, l).to_pose()));
     }
-    poses.truncate(links);
-}
-
-fn is_rotor(link: &multibody::Link) -> bool {
-    link.inertia.mass == 0.0 && link.inertia.rot != spatial::Mat3::zeros()
 }
 
 fn write_contact_samples(world: &World, contacts: &mut Vec<ContactSample>) {

@@ -1,8 +1,8 @@
 //! A mission as something to record and to see: channels, scene, close-up, trails.
 
 use crate::spec::Strategy;
-use crate::{Mission, docking_visuals, glob_matches, to_toml};
-use record::{ChannelSpec, Meta, Plot, Probe, RecorderPlan, Scene, SceneVehicle, Trail};
+use crate::{Mission, ScenarioErrors, docking_visuals, glob_matches, sensors, to_toml};
+use record::{ChannelSpec, Function, Meta, Plot, Probe, RecorderPlan, Scene, SceneVehicle, Trail};
 use sim::World;
 use spatial::Vec3;
 
@@ -47,11 +47,15 @@ pub fn scene(mission: &Mission) -> Scene {
     scene
 }
 
-/// What is recorded.
-pub fn recorder_plan(mission: &Mission, scene: &Scene) -> RecorderPlan {
+/// What is recorded, as the sensors read it. What no run can record is told.
+pub fn recorder_plan(mission: &Mission, scene: &Scene) -> Result<RecorderPlan, ScenarioErrors> {
     let scenario = &mission.scenario;
     let patterns = scenario.output.channels.clone();
-    RecorderPlan {
+    let mut probes = relative_motion(mission);
+    for sensor in sensors::of_mission(mission).map_err(ScenarioErrors::new)? {
+        probes.push(Box::new(sensor));
+    }
+    Ok(RecorderPlan {
         meta: Meta {
             scenario: scenario.name.clone(),
             seed: scenario.seed,
@@ -60,22 +64,22 @@ pub fn recorder_plan(mission: &Mission, scene: &Scene) -> RecorderPlan {
             notes: Vec::new(),
         },
         every: mission.steps_per_sample,
-        probes: probes(mission),
+        probes,
         keep: Box::new(move |name| patterns.iter().any(|p| glob_matches(p, name))),
         links: scene.vehicles.iter().map(|v| v.links.len()).collect(),
-    }
+    })
 }
 
 /// Relative motion of tool and grapple frame.
-fn probes(mission: &Mission) -> Vec<Probe> {
+fn relative_motion(mission: &Mission) -> Vec<Box<dyn Probe + Send>> {
     let Strategy::TrackAndGrasp(spec) = &mission.scenario.strategy else { return Vec::new() };
     let model = mission.world.model();
     let (Some(tool), Some(grapple)) = (model.link(&spec.tool_frame), model.link(&spec.grapple_frame)) else {
         return Vec::new();
     };
-    let probe = |name: &str, unit: &str, text: &str, read: fn(&World, Ends) -> f64| Probe {
-        spec: ChannelSpec::new(name, unit, Plot::Relative).described(text),
-        read: Box::new(move |world| read(world, (tool, grapple))),
+    let probe = |name: &str, unit: &str, text: &str, read: fn(&World, Ends) -> f64| -> Box<dyn Probe + Send> {
+        let spec = ChannelSpec::new(name, unit, Plot::Relative).described(text);
+        Box::new(Function { spec, read: move |world: &World| read(world, (tool, grapple)) })
     };
     vec![
         probe("relative.distance", "m", "tool frame to grapple frame", |w, (a, b)| {

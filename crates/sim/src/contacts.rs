@@ -414,8 +414,8 @@ impl Touch {
         if turn_w != Vec3::zeros() {
             turn_w = carry_with_both(with(&turn_w), normals, &normal_w);
         }
-        let Self { pair, feature, local_b: point_b, .. } = *self;
-        ContactMemory { pair, feature, s_w, normal_w, turn_w, rest: self.out.rest, point_b }
+        let Self { pair, feature, local_b: point_b, weight, .. } = *self;
+        ContactMemory { pair, feature, s_w, normal_w, turn_w, rest: self.out.rest, point_b, weight }
     }
 }
 

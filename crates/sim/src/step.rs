@@ -11,6 +11,7 @@
 //! Derivation, costs and the traps: crate documentation.
 
 use crate::actuator::{ActuatorKind, CoordinatePoint, calc_thrust};
+use crate::books::{self, Thrust};
 use crate::contacts::{Answer, Place, Touch, commit_bristles, find_touches};
 use crate::drive;
 use crate::effect::{self, Acting};
@@ -18,6 +19,7 @@ use crate::mechanism;
 use crate::model::{Base, Model};
 use crate::pivots;
 use crate::solve;
+use crate::speed_limit;
 use crate::state::State;
 use crate::workspace::{Workspace, world_wrench};
 use multibody::{Accelerations, Kinematics};
@@ -36,7 +38,7 @@ const LAW_TOLERANCE: f64 = 1e-3;
 /// Force (N or N·m) below which a difference is round-off and nobody's business.
 const FORCE_FLOOR: f64 = 1e-10;
 /// Most solves in a step.
-const MAX_SOLVES: u32 = 8;
+pub(crate) const MAX_SOLVES: u32 = 8;
 /// Largest (h ω)² at which the midpoint rule resolves a contact; beyond it the stiff form takes over.
 const RESOLVED: f64 = 0.1;
 
@@ -44,6 +46,7 @@ const RESOLVED: f64 = 0.1;
 pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
     let h = ws.step;
     ws.since = None;
+    ws.gain_share = if scheme == Scheme::ImplicitMidpoint { 0.5 } else { 1.0 };
     begin(model, state, ws);
     drive::begin(model, state, ws, h);
     if scheme == Scheme::ImplicitMidpoint {
@@ -66,6 +69,8 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     }
     drive::place(model, state, ws.end);
     place_vehicles(model, state, ws, scheme);
+    books::add_coordinates(model, state, ws);
+    books::add_cut_off(model, state, ws);
     finish(model, state, ws);
     drive::add_step(model, state, ws);
     pivots::commit(ws);
@@ -118,6 +123,7 @@ fn calc_first_moment(kin: &Kinematics) -> (f64, Vec3) {
 pub(crate) fn begin(model: &Model, state: &State, ws: &mut Workspace) {
     ws.frames_start.copy_from_slice(&ws.frames);
     ws.q_start.copy_from_slice(&state.q);
+    ws.effects_start.copy_from_slice(&state.effects);
     ws.queries_start = ws.detector.narrow_count();
     for i in 0..model.vehicles.len() {
         ws.base_start[i] = ws.kin[i].vel[0];
@@ -134,7 +140,9 @@ pub(crate) fn finish(model: &Model, state: &mut State, ws: &mut Workspace) {
     state.time = now;
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| c.dry.is_some()) {
         let moved = state.q[coordinate.q_index] - ws.q_start[coordinate.q_index];
-        state.dry[i] = coordinate.advance_dry(state.dry[i], moved, ws.step);
+        let start = state.dry[i];
+        state.dry[i] = coordinate.advance_dry(start, moved, ws.step);
+        state.account.joint_loss += coordinate.calc_dry_loss(start, state.dry[i], moved);
     }
     effect::commit(model, state, ws);
     state.time = ws.end;
@@ -146,8 +154,10 @@ pub(crate) fn finish(model: &Model, state: &mut State, ws: &mut Workspace) {
 pub(crate) fn calc_external(model: &Model, state: &State, ws: &mut Workspace) {
     for (body, &(vehicle, local)) in model.owners.iter().enumerate() {
         let kin = &ws.kin[vehicle];
-        ws.external[body] = model.environment.calc_wrench(state.time, &kin.anchor, &kin.inertia[local]);
+        ws.weights[body] = model.environment.calc_wrench(state.time, &kin.anchor, &kin.inertia[local]);
+        ws.external[body] = ws.weights[body];
     }
+    ws.thrusts.clear();
     let acting = Acting { model, state, step: ws.step, since: ws.since };
     for (index, actuator) in model.actuators.iter().enumerate() {
         if let ActuatorKind::Thruster { body, position, direction, .. } = actuator.kind {
@@ -155,7 +165,9 @@ pub(crate) fn calc_external(model: &Model, state: &State, ws: &mut Workspace) {
             let kin = &ws.kin[vehicle];
             let r = kin.pos[local] + kin.rot[local] * position;
             let force = kin.rot[local] * (calc_thrust(index, &acting) * direction);
-            ws.external[body] += Wrench::from_force_at(force, &r);
+            let wrench = Wrench::from_force_at(force, &r);
+            ws.external[body] += wrench;
+            ws.thrusts.push(Thrust { actuator: index, body, wrench });
         }
     }
     effect::add_wrenches(model, state, ws);
@@ -210,9 +222,11 @@ fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) 
             Scheme::SemiImplicitEuler => (0.0, 0.0, q, h * v, h),
         };
         let dry_start = state.dry[i];
-        let point = CoordinatePoint { q_base, moved_base, v_start: v, beta, theta, dry_start, elapsed, from: None };
+        let (from, end, branch) = (None, None, None);
+        let point =
+            CoordinatePoint { q_base, moved_base, v_start: v, beta, theta, dry_start, elapsed, from, end, branch };
         let force = coordinate.eval(&point, v, &Acting { model, state, step: h, since: None });
-        ws.coordinate_points[i] = point;
+        ws.coordinate_points[i] = CoordinatePoint { branch: force.branch, ..point };
         ws.coordinate_forces[i] = force;
         ws.coordinate_lines[i] = (force.effort, force.slope);
     }
@@ -267,7 +281,10 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
         state.work.solves += 1;
         state.work.rate_evaluations += 1;
         let first_midpoint_pass = scheme == Scheme::ImplicitMidpoint && pass == 0;
-        converged = scheme == Scheme::SemiImplicitEuler || laws_hold(model, state, ws, first_midpoint_pass);
+        converged = match scheme {
+            Scheme::SemiImplicitEuler => speed_limit::hold_in_step(model, state, ws),
+            _ => laws_hold(model, state, ws, first_midpoint_pass),
+        };
         must_factor = !converged;
         if first_midpoint_pass {
             recalc_bias_at_midpoint(model, state, ws);
@@ -356,6 +373,7 @@ fn joint_laws_hold(model: &Model, state: &State, ws: &mut Workspace) -> bool {
         hold &= (law.effort - on_line).abs() <= LAW_TOLERANCE * law.effort.abs() + FORCE_FLOOR;
         ws.coordinate_forces[i] = crate::actuator::CoordinateForce { effort: on_line, ..law };
         ws.coordinate_lines[i] = (law.effort + law.slope * ws.v_gain[i], law.slope);
+        ws.coordinate_points[i].branch = law.branch;
     }
     hold
 }
@@ -393,41 +411,29 @@ fn relative_gain(model: &Model, ws: &Workspace, touch: &Touch) -> Vec3 {
     at(touch.body_b) - at(touch.body_a)
 }
 
-/// Momentum and accounts: every contact gives the same numbers to both sides. Works are taken at the mean velocity of the
-/// step, so that they sum to the change of kinetic energy; what an implicit step damps is booked where it damps it.
+/// Momentum: every contact gives the same numbers to both sides; and what [`books`] keeps of it.
 pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: f64) {
     for touch in &ws.touches {
         let impulse = h * touch.out.force;
         let moment = touch.point.cross(&impulse);
-        let error = h * model.one_sided_force;
         add_impulse(model, state, ws, touch.body_a, &touch.point, &Wrench::new(-moment, -impulse));
-        let on_b = Wrench::new(moment + touch.point.cross(&error), impulse + error);
-        add_impulse(model, state, ws, touch.body_b, &touch.point, &on_b);
-        let u_mean = touch.u + 0.5 * relative_gain(model, ws, touch);
-        state.account.contact_work += impulse.dot(&u_mean);
+        add_impulse(model, state, ws, touch.body_b, &touch.point, &Wrench::new(moment, impulse));
+        let gain = relative_gain(model, ws, touch);
+        let moved = h * (touch.u + ws.gain_share * (touch.carried + gain));
+        books::add_touch(model, state, touch, (&gain, &moved), h);
     }
     mechanism::add_impulses(model, state, ws, h);
     pivots::add_impulses(model, state, ws, h);
-    for (i, _) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
-        let force = &ws.coordinate_forces[i];
-        let moved = h * (state.v[i] + 0.5 * ws.v_gain[i]);
-        let motor_moved = force.motor_rate.map_or(moved, |rate| h * rate);
-        let by_effects = (force.by_effects + force.through) * moved - force.driven * motor_moved;
-        state.account.actuator_work += force.driven * motor_moved;
-        state.account.passive_joint_work += (force.effort - force.through - force.by_effects) * moved;
-        state.account.effect_work += by_effects;
-    }
     effect::add_impulses(model, state, ws, h);
-    for (body, &(vehicle, local)) in model.owners.iter().enumerate() {
+    books::add_external(model, state, ws, h);
+    for (body, &(vehicle, _)) in model.owners.iter().enumerate() {
         let external = ws.external[body];
         if external == Wrench::default() {
             continue;
         }
-        let (owner, kin) = (&model.vehicles[vehicle], &ws.kin[vehicle]);
-        let impulse = world_wrench(owner, &kin.anchor, &(external * h));
+        let impulse = world_wrench(&model.vehicles[vehicle], &ws.kin[vehicle].anchor, &(external * h));
         state.momentum[vehicle] += impulse;
         state.account.impulse += impulse;
-        state.account.external_work += h * (kin.vel[local] + ws.dvel[body] * 0.5).dot(&external);
     }
 }
 

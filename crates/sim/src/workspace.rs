@@ -15,6 +15,8 @@ pub(crate) struct Workspace {
     /// Length of the present step, s, and the time at its end, s.
     pub step: f64,
     pub end: f64,
+    /// Share of a step's gains in the velocity that displaces: 1 for the Euler schemes, ½ at mid-step, 0 in a stage.
+    pub gain_share: f64,
     /// Time since the step's start of an explicit stage, s.
     pub since: Option<f64>,
     pub kin: Vec<Kinematics>,
@@ -32,6 +34,9 @@ pub(crate) struct Workspace {
     pub pivots: Vec<crate::pivots::PivotTouch>,
     /// Per body, about its vehicle's anchor: forces from outside, then what motion takes beyond them.
     pub external: Vec<Wrench>,
+    /// Of these, gravity and tides; and the thrusters' shares.
+    pub weights: Vec<Wrench>,
+    pub thrusts: Vec<crate::books::Thrust>,
     pub bias: Vec<Wrench>,
     pub contact: Vec<Wrench>,
     /// What contacts and mechanisms add to the inertia of a body.
@@ -48,6 +53,7 @@ pub(crate) struct Workspace {
     pub drive_gain: Vec<Twist>,
     pub drive_start: Vec<crate::drive::DriveStart>,
     pub q_start: Vec<f64>,
+    pub effects_start: Vec<f64>,
     pub queries_start: u64,
     pub v_gain: Vec<f64>,
     /// Joints that are held in this step, with their rates before, and the largest share of what they bear that would move one.
@@ -76,6 +82,7 @@ impl Workspace {
         Self {
             step: model.step,
             end: 0.0,
+            gain_share: 0.0,
             since: None,
             kin: model.vehicles.iter().map(|v| Kinematics::new(&v.tree)).collect(),
             dynamics: model.vehicles.iter().map(|v| Dynamics::new(&v.tree)).collect(),
@@ -89,6 +96,8 @@ impl Workspace {
             couplings: Vec::with_capacity(model.mechanisms.len()),
             pivots: Vec::new(),
             external: vec![Wrench::default(); bodies],
+            weights: vec![Wrench::default(); model.owners.len()],
+            thrusts: Vec::with_capacity(model.actuators.len()),
             bias: vec![Wrench::default(); bodies],
             contact: vec![Wrench::default(); bodies],
             extra: vec![None; bodies],
@@ -97,6 +106,7 @@ impl Workspace {
             momentum_start: vec![Vec3::zeros(); model.vehicles.len()],
             centre_start: vec![Vec3::zeros(); model.vehicles.len()],
             q_start: vec![0.0; model.nq()],
+            effects_start: vec![0.0; model.effects.n_memory()],
             queries_start: 0,
             base_gain: vec![Twist::default(); model.vehicles.len()],
             base_acceleration: vec![Twist::default(); model.vehicles.len()],

@@ -112,18 +112,24 @@ impl Inertia {
         if mass <= 0.0 {
             return Err(InertiaError::Mass(mass));
         }
-        let mut moments: [f64; 3] = tensor_com.symmetric_eigenvalues().into();
-        moments.sort_by(f64::total_cmp);
+        let moments = sorted_moments(tensor_com);
+        if moments[0] <= 0.0 { Err(InertiaError::NotPositive(moments)) } else { Self::check_triangle(tensor_com) }
+    }
+
+    /// Checks that the two smaller principal moments sum to no less than the largest.
+    pub fn check_triangle(tensor_com: &Mat3) -> Result<(), InertiaError> {
+        let moments = sorted_moments(tensor_com);
         // Files carry six digits: a thin plate, where equality holds, must pass.
         let slack = 1e-5 * moments[2].abs();
-        if moments[0] <= 0.0 {
-            return Err(InertiaError::NotPositive(moments));
-        }
-        if moments[0] + moments[1] < moments[2] - slack {
-            return Err(InertiaError::Triangle(moments));
-        }
-        Ok(())
+        if moments[0] + moments[1] < moments[2] - slack { Err(InertiaError::Triangle(moments)) } else { Ok(()) }
     }
+}
+
+/// Principal moments, ascending.
+fn sorted_moments(tensor: &Mat3) -> [f64; 3] {
+    let mut moments: [f64; 3] = tensor.symmetric_eigenvalues().into();
+    moments.sort_by(f64::total_cmp);
+    moments
 }
 
 /// x with A x = b for a symmetric positive definite A, by Cramer's rule on the adjugate.

@@ -50,7 +50,7 @@ pub struct Change {
     pub text: String,
 }
 
-/// Everything that differs beyond its tolerance.
+/// Everything that differs beyond its tolerance, and mutations that do not end as the scenario says they must.
 pub fn find_changes(scenario: &Scenario, then: &Baseline, now: &Baseline) -> Vec<Change> {
     let mut changes = Vec::new();
     let mut add = |group, text: String| changes.push(Change { group, text });
@@ -71,6 +71,12 @@ pub fn find_changes(scenario: &Scenario, then: &Baseline, now: &Baseline) -> Vec
     for (name, a, b) in paired(&then.mutations, &now.mutations) {
         if a != b {
             add(Group::Mutations, format!("mutation {name}: {} → {}", shown(a), shown(b)));
+        }
+    }
+    for mutation in &scenario.mutations {
+        let ends = now.mutations.get(&mutation.name).and_then(Value::as_str);
+        if let Some(ends) = ends.filter(|ends| *ends != mutation.outcome) {
+            add(Group::Mutations, format!("mutation {}: must end {}, ends {ends}", mutation.name, mutation.outcome));
         }
     }
     if let (Some(a), Some(b)) = (&then.campaign, &now.campaign) {

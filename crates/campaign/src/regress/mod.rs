@@ -36,7 +36,7 @@ const CURVES: [&str; 5] =
 /// Runs a scenario and says what it shows now, in the form of a baseline without history.
 pub fn measure(scenario: &Scenario) -> Result<Baseline, CampaignError> {
     let mut mission = scenario::build(scenario)?;
-    let mut recorder = recorder(&mission);
+    let mut recorder = recorder(&mission)?;
     let mut judge = Judge::new(&mission);
     let ended = {
         let observers: &mut [&mut dyn Observer] = &mut [&mut judge, &mut recorder];
@@ -76,12 +76,12 @@ fn mutated(scenario: &Scenario, set: &[String]) -> Result<String, CampaignError>
     Ok(judge.conclude(&mission.world, &ended).outcome.to_owned())
 }
 
-fn recorder(mission: &Mission) -> Recorder<'static> {
-    let mut plan = recorder_plan(mission, &scene(mission));
+fn recorder(mission: &Mission) -> Result<Recorder<'static>, CampaignError> {
+    let mut plan = recorder_plan(mission, &scene(mission))?;
     plan.every = (mission.steps / INSTANTS).max(1);
     plan.keep = Box::new(|name| CURVES.iter().any(|pattern| scenario::glob_matches(pattern, name)));
     plan.links = Vec::new();
-    Recorder::new(&mission.world, plan, None)
+    Ok(Recorder::new(&mission.world, plan, None))
 }
 
 /// Makes the first runs of a scenario's campaign and keeps the values that its metrics took.

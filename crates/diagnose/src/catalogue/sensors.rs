@@ -11,7 +11,7 @@ const ANGLE: [&str; 3] = ["angle[0]", "angle[1]", "angle[2]"];
 pub(super) fn add(sensor: &SensorFact, all: &mut Vec<Hypothesis>) {
     let place = format!("sensor:{}", sensor.channel);
     let place = place.as_str();
-    let scalar = matches!(sensor.quantity, Quantity::JointPosition(_) | Quantity::JointVelocity(_));
+    let scalar = sensor.quantity.is_joint();
     let orientation = matches!(sensor.quantity, Quantity::Orientation(..));
     if scalar {
         all.push(hypothesis("sensor-bias", place, vec![Coordinate::free("bias", 0.0)]).screened(&[(0, sensor.sigma)]));

@@ -1,6 +1,7 @@
 //! Links and joints as one tree: every link but the root is the child of one joint.
 
-use super::errors::{Findings, UrdfProblem, cut};
+use super::errors::{UrdfProblem, cut};
+use super::findings::Findings;
 use super::facts::{Facts, JointFact, LinkFact, Mention};
 use super::joints::nearest_name;
 

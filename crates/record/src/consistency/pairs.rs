@@ -39,6 +39,7 @@ pub(super) fn find(set: &RecordingSet) -> Vec<Pair> {
         let named = |prefix: &str, parts: &[&str]| parts.iter().map(|c| format!("{prefix}{c}")).collect::<Vec<_>>();
         let (position, parts, is_rotation): (String, &[&str], bool) = match name.quantity {
             Quantity::JointVelocity => (subject("position"), &[""], false),
+            Quantity::JointLinkVelocity => (subject("link_position"), &[""], false),
             Quantity::BodyLinearVelocity => (subject("position"), &[".x", ".y", ".z"], false),
             Quantity::BodyAngularVelocity => (subject("orientation"), &[".x", ".y", ".z"], true),
             _ => continue,

@@ -5,10 +5,14 @@ use super::units::Dimension;
 /// What a channel measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
-    /// Encoder of a joint, rad or m.
+    /// Encoder of a joint, rad or m: on the motor's side of a gear that yields.
     JointPosition,
-    /// Rate of a joint, rad/s or m/s.
+    /// Rate of a joint, rad/s or m/s, on the same side.
     JointVelocity,
+    /// Encoder on the link's side of a gear, rad or m.
+    JointLinkPosition,
+    /// Rate there, rad/s or m/s.
+    JointLinkVelocity,
     /// What the controller asked of a drive, N·m or N.
     JointEffortCommand,
     /// Torque sensor of a joint, N·m or N.
@@ -29,12 +33,16 @@ pub enum Quantity {
     ActuatorCommand,
     /// Prescribed motion of a driven part, m.
     DrivePosition,
+    /// Prescribed turn of a driven part about z of its motion, rad.
+    DriveAngle,
 }
 
 /// Family, name of the quantity in files, number of components (1: a scalar), what it is.
-const TABLE: [(&str, &str, &[&str], Quantity); 12] = [
+const TABLE: [(&str, &str, &[&str], Quantity); 15] = [
     ("joint", "position", &[], Quantity::JointPosition),
     ("joint", "velocity", &[], Quantity::JointVelocity),
+    ("joint", "link_position", &[], Quantity::JointLinkPosition),
+    ("joint", "link_velocity", &[], Quantity::JointLinkVelocity),
     ("joint", "effort_command", &[], Quantity::JointEffortCommand),
     ("joint", "effort", &[], Quantity::JointEffort),
     ("body", "position", &XYZ, Quantity::BodyPosition),
@@ -45,6 +53,7 @@ const TABLE: [(&str, &str, &[&str], Quantity); 12] = [
     ("sensor", "torque", &XYZ, Quantity::SensorTorque),
     ("actuator", "command", &[], Quantity::ActuatorCommand),
     ("drive", "position", &XYZ, Quantity::DrivePosition),
+    ("drive", "angle", &[], Quantity::DriveAngle),
 ];
 const XYZ: [&str; 3] = ["x", "y", "z"];
 const WXYZ: [&str; 4] = ["w", "x", "y", "z"];
@@ -53,10 +62,11 @@ impl Quantity {
     /// What its unit may measure: a joint turns or slides.
     pub fn dimensions(self) -> &'static [Dimension] {
         match self {
-            Self::JointPosition => &[Dimension::Angle, Dimension::Length],
-            Self::JointVelocity => &[Dimension::Rate, Dimension::Speed],
+            Self::JointPosition | Self::JointLinkPosition => &[Dimension::Angle, Dimension::Length],
+            Self::JointVelocity | Self::JointLinkVelocity => &[Dimension::Rate, Dimension::Speed],
             Self::JointEffortCommand | Self::JointEffort => &[Dimension::Torque, Dimension::Force],
             Self::BodyPosition | Self::DrivePosition => &[Dimension::Length],
+            Self::DriveAngle => &[Dimension::Angle],
             Self::BodyOrientation => &[Dimension::Number],
             Self::BodyLinearVelocity => &[Dimension::Speed],
             Self::BodyAngularVelocity => &[Dimension::Rate],
@@ -69,8 +79,8 @@ impl Quantity {
     /// SI unit as printed, both where a joint may turn or slide.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::JointPosition => "rad|m",
-            Self::JointVelocity => "rad/s|m/s",
+            Self::JointPosition | Self::JointLinkPosition => "rad|m",
+            Self::JointVelocity | Self::JointLinkVelocity => "rad/s|m/s",
             Self::JointEffortCommand | Self::JointEffort => "N·m|N",
             Self::ActuatorCommand => "",
             _ => self.dimensions()[0].si(),

@@ -8,12 +8,14 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A driven coordinate with its name among the channels.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DriveChannel {
     /// The channel of a recording that holds it, `drive.stage.position.x`.
     pub channel: String,
     /// Whether its path is to come from a recording that the scenario does not name.
     pub awaits_recording: bool,
+    /// Standard deviation of a sample of it, m or rad, where the scenario tells.
+    pub noise: Option<f64>,
 }
 
 /// The model on its drives, and their channels in the order that [`Model::with_drive_paths`] takes.
@@ -101,7 +103,7 @@ impl Site<'_> {
             DriveAxis::Z => "position.z",
             DriveAxis::Yaw => "angle",
         };
-        DriveChannel { channel: format!("drive.{}.{component}", self.drive.name), awaits_recording: false }
+        DriveChannel { channel: format!("drive.{}.{component}", self.drive.name), awaits_recording: false, noise: None }
     }
 
     fn recorded(
@@ -111,7 +113,7 @@ impl Site<'_> {
         faults: &mut Faults<'_>,
     ) -> Option<Vec<Coordinate>> {
         let Some(file) = self.file() else {
-            let waiting = |name: &String| DriveChannel { channel: name.clone(), awaits_recording: true };
+            let waiting = |name: &String| DriveChannel { channel: name.clone(), awaits_recording: true, noise };
             return Some(channels.iter().map(|(a, name)| (*a, DrivePath::ramp(0.0), waiting(name))).collect());
         };
         let recording = match read(&file) {
@@ -128,7 +130,7 @@ impl Site<'_> {
                 return None;
             };
             let path = DrivePath::smoothed(&recording.times, values, noise);
-            Some((*axis, path, DriveChannel { channel: (*name).clone(), awaits_recording: false }))
+            Some((*axis, path, DriveChannel { channel: (*name).clone(), awaits_recording: false, noise }))
         };
         channels.iter().map(path_of).collect()
     }

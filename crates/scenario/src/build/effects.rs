@@ -12,7 +12,6 @@ mod joint;
 mod line;
 mod mount;
 mod places;
-mod sensor;
 
 pub(super) use entry::Entry;
 
@@ -143,11 +142,11 @@ pub(super) fn apply(plan: &[Entry<'_>], parts: &mut Parts, faults: &mut Faults<'
             Family::Line => line::apply(entry, parts, faults),
             Family::Body => body::apply(entry, parts, faults),
             Family::Contact => contact::apply(entry, parts, faults),
-            Family::Sensor => sensor::apply(entry, parts, faults),
             Family::None => {
                 entry.fault(faults, "is what a diagnosis says of physics without a model; remove the entry")
             }
-            Family::Armature | Family::Inertia => {}
+            // Faults of sensors change no world, but what is read of it: `measure` and `sensors`.
+            Family::Armature | Family::Inertia | Family::Sensor => {}
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Force sensors: what touches a part, and what a mechanism does.
 
-use sim::{EffectKind, JointEffect, JointLaw, Model, World};
+use multibody::SlidingPoint;
+use sim::{EffectKind, JointEffect, JointLaw, Model, Vehicle, World};
 use spatial::{Pose, Vec3, Wrench};
 
 /// A force sensor of the world.
@@ -48,8 +49,10 @@ pub struct Mount {
 impl Mount {
     /// Every mount of a model.
     pub fn all(model: &Model) -> Vec<Self> {
-        let bodies = model.vehicles.iter().map(|v| v.tree.bodies.len()).sum();
-        (0..bodies).filter_map(|body| Self::of(model, body)).collect()
+        let points = |(v, vehicle): (usize, &Vehicle)| -> Vec<Self> {
+            vehicle.tree.sliding_points.iter().map(|point| Self::at(model, v, *point)).collect()
+        };
+        model.vehicles.iter().enumerate().flat_map(points).collect()
     }
 
     /// Mass of the tip, kg.
@@ -60,33 +63,26 @@ impl Mount {
 
     /// The mount that carries a global body; none where it is not on one.
     pub(super) fn of(model: &Model, body: usize) -> Option<Self> {
-        let (vehicle, own) = model
-            .vehicles
-            .iter()
-            .enumerate()
-            .find(|(_, v)| (v.body0..v.body0 + v.tree.bodies.len()).contains(&body))?;
-        let body = body - own.body0;
-        let link = own.tree.links.iter().position(|l| l.body == body)?;
-        let name = |axis: &str| format!("{}_{axis}", own.tree.links[link].name);
-        let [first, last] = ["x", "z"].map(|axis| own.tree.joint(&name(axis)));
-        let (first, last) = (first?, last?);
-        if last != first + 2 || body != last + 1 {
-            return None;
-        }
-        let coordinate = own.v0 + own.tree.joints[first].v_index;
-        let laws = model.effects().iter().filter_map(|e| match e.kind {
-            EffectKind::Joint(JointEffect { coordinate: c, law }) if c == coordinate => Some(law),
-            _ => None,
-        });
-        let (mut stiffness, mut damping) = (None, 0.0);
-        for law in laws {
-            match law {
-                JointLaw::Cable { stiffness: k, .. } => stiffness = Some(k),
-                JointLaw::Viscous { damping: d } => damping += d,
+        let &(vehicle, local) = model.owners.get(body)?;
+        Some(Self::at(model, vehicle, model.vehicles[vehicle].tree.sliding_point(local)?))
+    }
+
+    /// The mount of a sliding point: its springs and dampers are the effects on its first coordinate.
+    fn at(model: &Model, vehicle: usize, point: SlidingPoint) -> Self {
+        let own = &model.vehicles[vehicle];
+        let coordinate = own.v0 + own.tree.joints[point.joint].v_index;
+        let mut mount = Self { coordinate, stiffness: 0.0, damping: 0.0, vehicle, link: point.link };
+        for effect in model.effects() {
+            match effect.kind {
+                EffectKind::Joint(JointEffect { coordinate: c, law }) if c == coordinate => match law {
+                    JointLaw::Cable { stiffness, .. } => mount.stiffness += stiffness,
+                    JointLaw::Viscous { damping } => mount.damping += damping,
+                    _ => {}
+                },
                 _ => {}
             }
         }
-        Some(Self { coordinate, stiffness: stiffness?, damping, vehicle, link })
+        mount
     }
 
     /// What the mount does to the body that carries it, W axes, moment about `origin`; `touch` is what touches the tip, about its origin.

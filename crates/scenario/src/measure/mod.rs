@@ -6,7 +6,8 @@
 //!
 //! | channel | reads |
 //! | --- | --- |
-//! | `joint.….position`, `.velocity` | the motor side where the joint's gear yields, rad, rad/s or m, m/s |
+//! | `joint.….position`, `.velocity` | encoder and tachometer: the motor side where the joint's gear yields, rad, rad/s or m, m/s |
+//! | `joint.….link_position`, `.link_velocity` | the link side, which is where the joint stands; without such a gear the same |
 //! | `joint.….effort` | effort that acted in the last step, N·m or N |
 //! | `body.….position`, `.linear_velocity` | the link frame's origin, W axes |
 //! | `body.….orientation`, `.angular_velocity` | link axes in W; rate in link axes, as a gyro |
@@ -22,6 +23,7 @@ mod sensor;
 
 pub use force::{ForceGauge, Mount};
 pub use sensor::SensorModel;
+pub(crate) use sensor::find_fault;
 
 use crate::spec::Scenario;
 use sim::{ActuatorKind, DriveAxis, Model, World};
@@ -61,6 +63,10 @@ pub enum Quantity {
     JointPosition(usize),
     /// Motor side of a joint, rad/s or m/s.
     JointVelocity(usize),
+    /// Link side of a joint, rad or m.
+    JointLinkPosition(usize),
+    /// Link side of a joint, rad/s or m/s.
+    JointLinkVelocity(usize),
     /// Effort of the last step, N·m or N.
     JointEffort(usize),
     /// Origin of a link in W, m.
@@ -83,6 +89,17 @@ pub enum Quantity {
     Command(usize),
 }
 
+impl Quantity {
+    /// Whether it is of a joint, by one number.
+    pub fn is_joint(self) -> bool {
+        use Quantity::{JointEffort, JointLinkPosition, JointLinkVelocity, JointPosition, JointVelocity};
+        matches!(
+            self,
+            JointPosition(_) | JointVelocity(_) | JointLinkPosition(_) | JointLinkVelocity(_) | JointEffort(_)
+        )
+    }
+}
+
 impl Gauge {
     /// The quantity of that name, `body.slider.position`.
     pub fn resolve(scenario: &Scenario, model: &Model, name: &str) -> Result<Self, MeasureError> {
@@ -102,6 +119,8 @@ impl Gauge {
         match self.quantity {
             Quantity::JointPosition(v) => Reading::Scalar(world.motor_side(v).0),
             Quantity::JointVelocity(v) => Reading::Scalar(world.motor_side(v).1),
+            Quantity::JointLinkPosition(v) => Reading::Scalar(world.state().q[world.model().coordinates[v].q_index]),
+            Quantity::JointLinkVelocity(v) => Reading::Scalar(world.state().v[v]),
             Quantity::JointEffort(v) => Reading::Scalar(world.effort(v)),
             Quantity::Position(v, l) => Reading::Vector(world.link_frame(v, l).pos),
             Quantity::Orientation(v, l) => Reading::Rotation(world.link_frame(v, l).to_pose().rotation),
@@ -163,7 +182,7 @@ impl Meter {
     pub fn resolve(scenario: &Scenario, model: &Model, channel: &str) -> Result<Self, MeasureError> {
         let (name, component) = resolve::split(channel);
         let gauge = Gauge::resolve(scenario, model, name)?;
-        let sensor = SensorModel::of(&scenario.effects, name);
+        let sensor = SensorModel::of(&scenario.effects, model, name);
         let orientation = matches!(gauge.quantity, Quantity::Orientation(..));
         match resolve::component(gauge.is_scalar(), orientation, component) {
             Some(component) => Ok(Self { gauge, sensor, component }),
@@ -198,7 +217,6 @@ impl Meter {
 impl Gauge {
     /// Whether it reads a number.
     pub fn is_scalar(&self) -> bool {
-        use Quantity::{Command, DriveAngle, JointEffort, JointPosition, JointVelocity};
-        matches!(self.quantity, JointPosition(_) | JointVelocity(_) | JointEffort(_) | DriveAngle(_) | Command(_))
+        self.quantity.is_joint() || matches!(self.quantity, Quantity::DriveAngle(_) | Quantity::Command(_))
     }
 }

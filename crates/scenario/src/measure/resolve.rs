@@ -33,6 +33,8 @@ pub(super) fn quantity(scenario: &Scenario, model: &Model, name: &str) -> Result
     match (family, what) {
         ("joint", "position") => Ok(Quantity::JointPosition(joint(model, name)?)),
         ("joint", "velocity") => Ok(Quantity::JointVelocity(joint(model, name)?)),
+        ("joint", "link_position") => Ok(Quantity::JointLinkPosition(joint(model, name)?)),
+        ("joint", "link_velocity") => Ok(Quantity::JointLinkVelocity(joint(model, name)?)),
         ("joint", "effort") => Ok(Quantity::JointEffort(joint(model, name)?)),
         ("body", "position") => link(model, name).map(|(v, l)| Quantity::Position(v, l)),
         ("body", "orientation") => link(model, name).map(|(v, l)| Quantity::Orientation(v, l)),
@@ -53,7 +55,8 @@ pub(super) fn quantity(scenario: &Scenario, model: &Model, name: &str) -> Result
 fn only<'a, T: Copy>(what: &str, text: &str, all: impl Iterator<Item = (&'a str, &'a str, T)>) -> Result<T, String> {
     let all: Vec<(&str, &str, T)> = all.collect();
     let full = |c: &(&str, &str, T)| format!("{}/{}", c.0, c.1);
-    let found: Vec<_> = all.iter().filter(|c| c.1 == text || full(c) == text).collect();
+    let is_full = |c: &(&str, &str, T)| text.split_once('/') == Some((c.0, c.1));
+    let found: Vec<_> = all.iter().filter(|c| c.1 == text || is_full(c)).collect();
     match found[..] {
         [one] => Ok(one.2),
         [] => Err(format!("no {what} \"{text}\"{}", hint_for_name(text, all.iter().map(|c| c.1)))),
@@ -61,20 +64,87 @@ fn only<'a, T: Copy>(what: &str, text: &str, all: impl Iterator<Item = (&'a str,
     }
 }
 
-fn joint(model: &Model, name: &str) -> Result<usize, String> {
+/// Joints with a coordinate of their own: vehicle, name, index into the world's `v`.
+fn joints(model: &Model) -> impl Iterator<Item = (&str, &str, usize)> {
     let single = |j: &&Joint| !j.is_mimic && matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
-    let of = |v: &'_ sim::Vehicle| v.v0;
-    let all = model.vehicles.iter().flat_map(|v| {
-        v.tree.joints.iter().filter(single).map(move |j| (v.name.as_str(), j.name.as_str(), of(v) + j.v_index))
-    });
-    only("joint", name, all)
+    model.vehicles.iter().flat_map(move |v| {
+        v.tree.joints.iter().filter(single).map(|j| (v.name.as_str(), j.name.as_str(), v.v0 + j.v_index))
+    })
+}
+
+/// Links: vehicle, name, and both as indices.
+fn links(model: &Model) -> impl Iterator<Item = (&str, &str, (usize, usize))> {
+    model.vehicles.iter().enumerate().flat_map(|(v, vehicle)| {
+        vehicle.tree.links.iter().enumerate().map(move |(l, link)| (vehicle.name.as_str(), link.name.as_str(), (v, l)))
+    })
+}
+
+fn joint(model: &Model, name: &str) -> Result<usize, String> {
+    only("joint", name, joints(model))
 }
 
 fn link(model: &Model, name: &str) -> Result<(usize, usize), String> {
-    let all = model.vehicles.iter().enumerate().flat_map(|(v, vehicle)| {
-        vehicle.tree.links.iter().enumerate().map(move |(l, link)| (vehicle.name.as_str(), link.name.as_str(), (v, l)))
-    });
-    only("link", name, all).or_else(|error| model.vehicle(name).map(|v| (v, 0)).ok_or(error))
+    only("link", name, links(model)).or_else(|error| model.vehicle(name).map(|v| (v, 0)).ok_or(error))
+}
+
+/// What is measured of the subjects of a family, scalars last.
+const MEASURED: [(&str, &[&str]); 4] = [
+    ("joint", &["position", "velocity", "link_position", "link_velocity", "effort"]),
+    ("body", &["position", "orientation", "linear_velocity", "angular_velocity"]),
+    ("sensor", &["force", "torque"]),
+    ("drive", &["position", "angle"]),
+];
+
+/// Every quantity that can be read, each by all names that mean it.
+pub(super) fn all_names(scenario: &Scenario, model: &Model) -> Vec<Vec<String>> {
+    let named = |name: &String| vec![name.clone()];
+    let subjects = |family: &str| -> Vec<Vec<String>> {
+        match family {
+            "joint" => joints(model).map(|(v, j, at)| joint_names(model, (v, j), at)).collect(),
+            "body" => links(model).map(|(v, l, at)| link_names(model, (v, l), at)).collect(),
+            "sensor" => scenario.sensors.iter().map(|s| named(&s.name)).collect(),
+            _ => model.drives.iter().map(|d| named(&d.name)).collect(),
+        }
+    };
+    let of_family = |(family, quantities): &(&str, &[&str])| -> Vec<Vec<String>> {
+        let whole = |names: &Vec<String>, what: &str| names.iter().map(|n| format!("{family}.{n}.{what}")).collect();
+        subjects(family).iter().flat_map(|names| quantities.iter().map(|what| whole(names, what))).collect()
+    };
+    MEASURED.iter().flat_map(of_family).collect()
+}
+
+/// All names that mean what `name` means: with the vehicle, and without it where that is enough.
+pub(super) fn synonyms(model: &Model, name: &str) -> Vec<String> {
+    let parts = name.split_once('.').and_then(|(family, rest)| Some((family, rest.rsplit_once('.')?)));
+    let Some((family, (subject, what))) = parts else { return vec![name.to_owned()] };
+    let subjects = match family {
+        "joint" => joint(model, subject).ok().and_then(|at| {
+            let own = joints(model).find(|(.., a)| *a == at)?;
+            Some(joint_names(model, (own.0, own.1), at))
+        }),
+        "body" => link(model, subject).ok().and_then(|at| {
+            let own = links(model).find(|(.., a)| *a == at)?;
+            Some(link_names(model, (own.0, own.1), at))
+        }),
+        _ => None,
+    };
+    subjects.map_or_else(
+        || vec![name.to_owned()],
+        |all| all.iter().map(|subject| format!("{family}.{subject}.{what}")).collect(),
+    )
+}
+
+fn joint_names(model: &Model, (vehicle, name): (&str, &str), at: usize) -> Vec<String> {
+    let mut names = vec![format!("{vehicle}/{name}"), name.to_owned()];
+    names.retain(|n| joint(model, n) == Ok(at));
+    names
+}
+
+fn link_names(model: &Model, (vehicle, name): (&str, &str), at: (usize, usize)) -> Vec<String> {
+    let mut names = vec![format!("{vehicle}/{name}"), name.to_owned(), vehicle.to_owned()];
+    names.retain(|n| link(model, n) == Ok(at));
+    names.dedup();
+    names
 }
 
 fn drive(model: &Model, name: &str) -> Result<usize, String> {

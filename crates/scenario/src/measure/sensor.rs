@@ -6,8 +6,11 @@
 //! and sensor-misalignment at `sensor:<channel prefix>` give it; several at one sensor come together. A prefix that names one
 //! component faults that component.
 
-use super::Reading;
-use crate::spec::{Effect, ParamValue};
+use super::resolve::{all_names, synonyms};
+use super::{Gauge, Quantity, Reading};
+use crate::spec::{Effect, ParamValue, Scenario};
+use crate::spelling::hint_for_name;
+use sim::Model;
 use spatial::{Vec3, exp_rotation};
 
 /// A sensor with faults; the default has none and changes no bit.
@@ -30,11 +33,19 @@ impl Default for SensorModel {
 }
 
 impl SensorModel {
-    /// What the effects of a scenario make of the sensor of a quantity (`body.target.angular_velocity`).
-    pub fn of(effects: &[Effect], quantity: &str) -> Self {
+    /// What the effects of a scenario make of the sensor of a quantity (`body.target.angular_velocity`), by whichever of its
+    /// names they call it.
+    pub fn of(effects: &[Effect], model: &Model, quantity: &str) -> Self {
+        if !effects.iter().any(is_of_sensor) {
+            return Self::default();
+        }
+        Self::of_names(effects, &synonyms(model, quantity))
+    }
+
+    fn of_names(effects: &[Effect], names: &[String]) -> Self {
         let mut sensor = Self::default();
-        for effect in effects.iter().filter(|e| e.name.starts_with("sensor-")) {
-            if let Some(part) = effect.place.strip_prefix("sensor:").and_then(|prefix| part_of(prefix, quantity)) {
+        for effect in effects.iter().filter(|e| is_of_sensor(e)) {
+            if let Some(part) = part_of_any(&effect.place, names) {
                 sensor.add(effect, part);
             }
         }
@@ -84,6 +95,41 @@ enum Part {
     Component(usize),
 }
 
+fn is_of_sensor(effect: &Effect) -> bool {
+    effect.name.starts_with("sensor-")
+}
+
+/// The part that a place, `sensor:` and a prefix, means of a quantity of these names.
+fn part_of_any(place: &str, names: &[String]) -> Option<Part> {
+    let prefix = place.strip_prefix("sensor:")?;
+    names.iter().find_map(|name| part_of(prefix, name))
+}
+
+/// What is wrong with the effect of a sensor: its place means no channel, or none on which it can act.
+pub(crate) fn find_fault(scenario: &Scenario, model: &Model, effect: &Effect) -> Option<String> {
+    let all = all_names(scenario, model);
+    let meant: Vec<&Vec<String>> = all.iter().filter(|names| part_of_any(&effect.place, names).is_some()).collect();
+    let prefix = effect.place.strip_prefix("sensor:").unwrap_or(&effect.place);
+    if meant.is_empty() {
+        return Some(format!(
+            "no channel begins with \"{prefix}\"{}",
+            hint_for_name(prefix, all.iter().flatten().map(String::as_str))
+        ));
+    }
+    let quantity = |names: &&Vec<String>| Gauge::resolve(scenario, model, &names[0]).ok();
+    let gauges: Vec<Gauge> = meant.iter().filter_map(quantity).collect();
+    let turns = |g: &Gauge| matches!(g.quantity(), Quantity::Orientation(..));
+    match effect.name.as_str() {
+        "sensor-bias" | "sensor-scale" if gauges.iter().all(turns) => {
+            Some("an orientation has neither bias nor scale; use sensor-misalignment".to_owned())
+        }
+        "sensor-misalignment" if gauges.iter().all(Gauge::is_scalar) => {
+            Some("a single number has no direction; use sensor-bias or sensor-scale".to_owned())
+        }
+        _ => None,
+    }
+}
+
 /// A prefix ends where a word of the channel ends: `body.a` is not of `body.ab`.
 fn part_of(prefix: &str, quantity: &str) -> Option<Part> {
     let begins =
@@ -104,6 +150,10 @@ mod tests {
         Effect { name: name.to_owned(), place: place.to_owned(), params: [(key.to_owned(), value)].into() }
     }
 
+    fn of(effects: &[Effect], quantity: &str) -> SensorModel {
+        SensorModel::of_names(effects, &[quantity.to_owned()])
+    }
+
     const GYRO: &str = "body.target.angular_velocity";
 
     #[test]
@@ -114,16 +164,16 @@ mod tests {
             effect("sensor-bias", "sensor:body.target", "bias", ParamValue::Number(0.0)),
             effect("sensor-scale", "sensor:body.target", "scale", ParamValue::Number(1.0)),
         ];
-        assert_eq!(SensorModel::of(&neutral, GYRO), SensorModel::default());
+        assert_eq!(of(&neutral, GYRO), SensorModel::default());
         let beside = [effect("sensor-scale", "sensor:body.target", "scale", ParamValue::Number(1.0 + 1e-6))];
-        assert_ne!(SensorModel::of(&beside, GYRO).apply(&value), value);
+        assert_ne!(of(&beside, GYRO).apply(&value), value);
     }
 
     #[test]
     fn a_sensor_turned_by_a_quarter_about_z_reads_x_as_minus_y() {
         let angle = vec![0.0, 0.0, std::f64::consts::FRAC_PI_2];
         let turned = [effect("sensor-misalignment", &format!("sensor:{GYRO}"), "angle", ParamValue::Numbers(angle))];
-        let sensor = SensorModel::of(&turned, GYRO);
+        let sensor = of(&turned, GYRO);
         let Reading::Vector(seen) = sensor.apply(&Reading::Vector(Vec3::x())) else { panic!("a vector") };
         assert!((seen + Vec3::y()).norm() < 1e-15, "{seen}");
         let body = Rot::from_euler_angles(0.3, -0.2, 0.9);
@@ -146,7 +196,7 @@ mod tests {
             effect("sensor-bias", "sensor:body.tar", "bias", ParamValue::Number(100.0)),
             effect("sensor-delay", "sensor:body.target", "delay", ParamValue::Number(0.02)),
         ];
-        let sensor = SensorModel::of(&all, GYRO);
+        let sensor = of(&all, GYRO);
         assert_eq!(sensor.apply(&Reading::Vector(Vec3::repeat(1.0))), Reading::Vector(Vec3::new(3.0, 4.5, 5.0)));
         assert_eq!(sensor.delay, 0.02);
     }

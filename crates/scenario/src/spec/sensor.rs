@@ -1,6 +1,9 @@
 //! Sensors: what is measured, where, how often, and with which errors.
 //!
 //! reading(t) = true value(t − delay) + bias + white noise of the given standard deviation, drawn at each sample.
+//!
+//! A run reads them so and records `sensor.<name>.force.{x,y,z}` and `.torque.{x,y,z}`. What a rig has recorded has its own
+//! instants and noise: a diagnosis takes place, frame and part from here, and the rest from the recording.
 
 use super::pose::PoseSpec;
 use super::vehicle::world;
@@ -160,6 +163,18 @@ pub enum SensorKind {
 }
 
 impl SensorKind {
+    /// Its name in a file.
+    pub fn text(&self) -> &'static str {
+        match self {
+            Self::JointEncoder { .. } => "joint-encoder",
+            Self::Imu { .. } => "imu",
+            Self::Pose { .. } => "pose",
+            Self::ForceTorque { .. } => "force-torque",
+            Self::ContactForce { .. } => "contact-force",
+            Self::MechanismForce { .. } => "mechanism-force",
+        }
+    }
+
     /// Whether this version simulates it.
     pub fn is_simulated(&self) -> bool {
         matches!(self, Self::ContactForce { .. } | Self::MechanismForce { .. })

@@ -229,7 +229,8 @@ pub struct Command {
     /// The actuator, by name.
     #[schemars(extend("x-refers" = "actuator"))]
     pub actuator: String,
-    /// Corners [t in s, value in the command's SI unit] of a piecewise linear course, constant before and after.
+    /// Corners [t in s, value in the command's SI unit] of a piecewise linear course, constant before and after: the position of a
+    /// joint-drive, its rate where it has no stiffness, else the effort.
     #[schemars(length(min = 1), extend("x-ascending" = true))]
     pub points: Vec<[f64; 2]>,
 }

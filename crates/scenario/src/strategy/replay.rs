@@ -2,7 +2,7 @@
 
 use super::schedule::Target;
 use crate::build::{ActuatorTable, Faults};
-use crate::spec::{Replay, Scenario};
+use crate::spec::{DriveMotion, Replay, Scenario};
 use sim::{Command, Controller, Model, World};
 
 /// Plays columns of a recording.
@@ -64,10 +64,16 @@ pub(super) fn build(
             courses.push(course(model, a, &recording.times, values));
         }
     }
-    if courses.is_empty() {
-        faults.add("strategy.file", "no column of the recording commands an actuator; give strategy.mapping");
+    if courses.is_empty() && !moves_a_drive(scenario) {
+        let reason = "no column of the recording commands an actuator or moves a drive; give strategy.mapping";
+        faults.add("strategy.file", reason);
     }
     Some(ReplayPlayer { courses })
+}
+
+/// Whether a drive follows the strategy's recording.
+fn moves_a_drive(scenario: &Scenario) -> bool {
+    scenario.drives.iter().any(|d| matches!(&d.motion, DriveMotion::Recording { file: None, .. }))
 }
 
 /// The samples that are there; a cell that was not sampled keeps the command before it.

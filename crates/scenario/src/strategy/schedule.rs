@@ -14,6 +14,8 @@ pub(super) struct SchedulePlayer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Target {
     Position,
+    /// Of a drive without stiffness: a loop on the rate alone.
+    Velocity,
     Effort,
 }
 
@@ -21,7 +23,8 @@ impl Target {
     /// What a single value means to an actuator.
     pub(super) fn of(kind: &ActuatorKind) -> Self {
         match kind {
-            ActuatorKind::JointDrive { .. } => Self::Position,
+            ActuatorKind::JointDrive { stiffness, .. } if *stiffness > 0.0 => Self::Position,
+            ActuatorKind::JointDrive { .. } => Self::Velocity,
             ActuatorKind::JointEffort { .. } | ActuatorKind::Thruster { .. } | ActuatorKind::LatchRelease { .. } => {
                 Self::Effort
             }
@@ -31,6 +34,7 @@ impl Target {
     pub(super) fn write(self, value: f64, command: &mut Command) {
         match self {
             Self::Position => command.position = value,
+            Self::Velocity => command.velocity = value,
             Self::Effort => command.effort = value,
         }
     }

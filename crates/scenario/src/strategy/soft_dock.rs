@@ -5,7 +5,7 @@
 use crate::build::{ActuatorTable, Faults};
 use crate::outcome::calc_base_motion;
 use crate::spec::SoftDock;
-use sim::{Command, Controller, MechanismStatus, Model, World};
+use sim::{ActuatorKind, Command, Controller, MechanismStatus, Model, World};
 
 /// Steps between two decisions: nothing here is faster than a latch.
 const PERIOD: u64 = 10;
@@ -32,6 +32,10 @@ pub(super) fn build(
         let valid = model.actuators.iter().map(|a| a.name.as_str());
         faults.unknown("strategy.retraction", "actuator", &spec.retraction, valid);
         return None;
+    }
+    if retraction.iter().any(|a| !matches!(model.actuators[*a].kind, ActuatorKind::LatchRelease { .. })) {
+        let reason = format!("\"{}\" opens no latch; name an actuator of kind latch-release", spec.retraction);
+        faults.add("strategy.retraction", reason);
     }
     // The file's check has seen to it that these names stand in it.
     let index = |name: &String| model.mechanisms.iter().position(|m| m.name == *name);

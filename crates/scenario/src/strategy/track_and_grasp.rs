@@ -128,6 +128,14 @@ pub(super) fn build(
 ) -> Option<Grasper> {
     let (vehicle, link) = frame_of(model, &spec.tool_frame, "strategy.tool_frame", faults)?;
     let (target, grapple) = frame_of(model, &spec.grapple_frame, "strategy.grapple_frame", faults)?;
+    for (key, frame, owner, role, name) in [
+        ("strategy.tool_frame", &spec.tool_frame, vehicle, "servicer", &spec.servicer),
+        ("strategy.grapple_frame", &spec.grapple_frame, target, "target", &spec.target),
+    ] {
+        if model.vehicles[owner].name != *name {
+            faults.add(key, format!("\"{frame}\" is not of the {role} \"{name}\"; name a link of that vehicle"));
+        }
+    }
     let drives = arm_drives(spec, model, vehicle, link);
     if drives.len() < 6 {
         faults

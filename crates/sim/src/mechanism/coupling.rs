@@ -304,8 +304,8 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         let gain = coupling.calc_gain(ws);
         for (i, gain) in gain.iter().enumerate().take(coupling.at.n) {
             let force = h * coupling.force[i];
-            state.account.mechanism_work += force * (coupling.rate[i] + 0.5 * gain);
-            state.account.actuator_work -= force * coupling.at.rest_rate[i];
+            state.account.mechanism_work += force * (coupling.rate[i] + ws.gain_share * gain);
+            state.account.pull_in_work -= force * coupling.at.rest_rate[i];
             state.account.mechanism_loss += h * coupling.law[i].loss;
         }
     }

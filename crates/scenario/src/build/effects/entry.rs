@@ -80,6 +80,11 @@ impl<'a> Entry<'a> {
         self.given(name).unwrap_or_else(|| self.neutral(name))
     }
 
+    /// Whether the file says anything of a parameter.
+    pub(super) fn is_given(&self, name: &str) -> bool {
+        self.spec.params.contains_key(name)
+    }
+
     /// A number, where the file gives it.
     pub(super) fn given(&self, name: &str) -> Option<f64> {
         self.spec.params.get(name).and_then(ParamValue::number)

@@ -56,6 +56,12 @@ fn periodic(entry: &Entry<'_>, faults: &mut Faults<'_>) -> Option<JointLaw> {
         faults.add(&entry.key("amplitude"), "must be one number at a joint");
         return None;
     };
+    if entry.is_given("kind") {
+        faults.add(
+            &entry.key("kind"),
+            "is that of the joint: a torque where it turns, a force where it slides; leave it out",
+        );
+    }
     Some(JointLaw::Periodic { amplitude, frequency: entry.number("frequency"), phase: entry.number("phase") })
 }
 
