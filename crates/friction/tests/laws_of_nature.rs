@@ -53,18 +53,16 @@ fn laws() -> impl Strategy<Value = Bristle> {
     let brush = (prop_oneof![Just(1.0), 0.1..3.0f64], 1e2..1e7f64, 0.0..1e3f64, 0.0..10.0f64);
     let fall = prop_oneof![Just(0.0), 1e-4..0.1f64];
     (levels, brush, fall).prop_map(
-        |((mu_kinetic, drop, stribeck_speed, dwell_time), (across, stiffness, damping, viscous), fall_time)| {
-            Bristle {
-                mu_static: mu_kinetic + drop,
-                mu_kinetic,
-                stribeck_speed,
-                dwell_time,
-                fall_time,
-                across,
-                stiffness,
-                damping,
-                viscous,
-            }
+        |((mu_kinetic, drop, stribeck_speed, dwell_time), (across, stiffness, damping, viscous), fall_time)| Bristle {
+            mu_static: mu_kinetic + drop,
+            mu_kinetic,
+            stribeck_speed,
+            dwell_time,
+            fall_time,
+            across,
+            stiffness,
+            damping,
+            viscous,
         },
     )
 }

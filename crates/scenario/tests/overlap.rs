@@ -22,7 +22,9 @@ fn head(environment: &str) -> String {
 }
 
 fn block(name: &str, position: [f64; 3]) -> String {
-    format!("[[vehicle]]\nname = \"{name}\"\nurdf = \"robots/bench/peer-block.urdf\"\npose = {{ position_m = {position:?} }}\n")
+    format!(
+        "[[vehicle]]\nname = \"{name}\"\nurdf = \"robots/bench/peer-block.urdf\"\npose = {{ position_m = {position:?} }}\n"
+    )
 }
 
 /// A block of 1 kg, 0.1 m high, `depth` deep in the floor.
@@ -95,7 +97,10 @@ fn a_stack_is_held_by_all_of_its_weight() {
     assert_eq!(stack(1.0), "");
     assert_eq!(stack(1.5), "");
     let deep = stack(5.0);
-    assert!(deep.contains("\"low/block\" and \"top/block\"") || deep.contains("\"low/block\" and \"world/floor\""), "{deep}");
+    assert!(
+        deep.contains("\"low/block\" and \"top/block\"") || deep.contains("\"low/block\" and \"world/floor\""),
+        "{deep}"
+    );
 }
 
 /// Three boxes in a row, 0.1 m apart and 0.12 m long: neighbours overlap by 20 mm, and the third leans on the first.
@@ -133,7 +138,9 @@ fn a_glob_leaves_out_links_that_one_joint_holds_together() {
 fn neighbours_that_are_named_and_overlap_are_refused_with_the_joint_between_them() {
     let said = arm(0.0, "[[contact]]\nbetween = [\"arm/base\", \"arm/upper\"]\n").unwrap_err();
     // A face of 0.05 m by 0.05 m in another, 20 mm deep: four points of 20 J.
-    for fragment in ["\"arm/base_box\" and \"arm/upper_box\"", "20.000 mm", "80.000 J", "joint \"shoulder\"", "enabled = false"] {
+    for fragment in
+        ["\"arm/base_box\" and \"arm/upper_box\"", "20.000 mm", "80.000 J", "joint \"shoulder\"", "enabled = false"]
+    {
         assert!(said.contains(fragment), "{fragment} is not in:\n{said}");
     }
     let apart = "[[contact]]\nbetween = [\"arm/upper\", \"arm/fore\"]\n";

@@ -46,7 +46,10 @@ fn run(options: &Options) -> Result<Outcome, LabError> {
     let charts = vec![
         Chart::new("Angle from −velocity to the friction force", "angle of the motion to the grain, °", "angle, °")
             .theory("against the velocity", fine().map(|d| (d, 0.0)).collect())
-            .theory("maximum dissipation", fine().map(|d| (d, lag(&calc_associated(d.to_radians()), d.to_radians()))).collect())
+            .theory(
+                "maximum dissipation",
+                fine().map(|d| (d, lag(&calc_associated(d.to_radians()), d.to_radians()))).collect(),
+            )
             .marks("measured", directions),
         Chart::new("Size of the friction force", "angle of the motion to the grain, °", "force, N")
             .theory("level of the direction", fine().map(|d| (d, calc_force(d.to_radians()).norm())).collect())

@@ -60,7 +60,8 @@ pub(super) fn resolve(scenario: &Scenario, vehicles: &mut [VehicleSpec], faults:
 
 fn check_start_speed(i: usize, speed: f64, limit: f64, faults: &mut Faults<'_>) {
     if speed.abs() > limit {
-        let reason = format!("starts at {speed} rad/s, beyond its limit of {limit}; lower it or raise speed_limit_rad_per_s");
+        let reason =
+            format!("starts at {speed} rad/s, beyond its limit of {limit}; lower it or raise speed_limit_rad_per_s");
         faults.add(&format!("actuator[{i}].speed_rad_per_s"), reason);
     }
 }

@@ -169,7 +169,8 @@ fn check_grains(scenario: &Scenario, faults: &mut Faults<'_>) {
     for (i, rule) in scenario.contacts.iter().enumerate() {
         let differs = rule.friction.as_ref().map_or(by_default, differs);
         if rule.grain.is_some() && !differs {
-            let reason = "does nothing where the levels are the same in all directions; give the friction an across_ratio";
+            let reason =
+                "does nothing where the levels are the same in all directions; give the friction an across_ratio";
             faults.add(&format!("contact[{i}].grain"), reason);
         }
         if rule.grain.is_none() && rule.friction.is_some() && differs {

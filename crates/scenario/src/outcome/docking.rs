@@ -250,7 +250,11 @@ impl DockingWatch {
             "speed of the visitor's base as the port's vehicle sees it, at the end",
         );
         add("residual_rate_deg_per_s", now.rate.to_degrees().into(), "angular rate between the two bases at the end");
-        add("peak_interface_force_n", self.peak_force.into(), "largest resultant of contact and latches between the two sides");
+        add(
+            "peak_interface_force_n",
+            self.peak_force.into(),
+            "largest resultant of contact and latches between the two sides",
+        );
         add("nearest_m", self.nearest.into(), "least distance of the interface frames");
     }
 }

@@ -61,10 +61,14 @@ mod tests {
     /// Blocks of 1 kg in a row: `a` held to `b` by an engaged latch, `c` welded to `b`; a jet of 10 N on `b`.
     fn interface() -> (World, Interface) {
         let block = |name: &str, x: f64| {
-            format!("[[vehicle]]\nname = \"{name}\"\nurdf = \"robots/bench/peer-block.urdf\"\npose = {{ position_m = [{x}, 0, 0] }}\n")
+            format!(
+                "[[vehicle]]\nname = \"{name}\"\nurdf = \"robots/bench/peer-block.urdf\"\npose = {{ position_m = [{x}, 0, 0] }}\n"
+            )
         };
         let joined = |name: &str, kind: &str, a: &str, b: &str, rest: &str| {
-            format!("[[mechanism]]\nname = \"{name}\"\nkind = \"{kind}\"\na = {{ on = \"{a}/block\" }}\nb = {{ on = \"{b}/block\" }}\n{rest}\n")
+            format!(
+                "[[mechanism]]\nname = \"{name}\"\nkind = \"{kind}\"\na = {{ on = \"{a}/block\" }}\nb = {{ on = \"{b}/block\" }}\n{rest}\n"
+            )
         };
         let latch = "engaged = true\ncapture = { axial_m = [0, 1], lateral_m = 1, tilt_deg = 9 }\n\
                      hold = { stiffness_n_per_m = 1e4, damping_n_s_per_m = 200, torsional_stiffness_n_m_per_rad = 100, \

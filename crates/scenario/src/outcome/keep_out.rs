@@ -269,7 +269,10 @@ mod tests {
             let touched = watch.touched.expect("it flew through");
             // At the look that finds it the overlap is at most the error.
             let expected = 1.8 / speed;
-            assert!((touched - expected).abs() < 1e-5 / speed + 1e-12, "{touched} s against {expected} s at {speed} m/s");
+            assert!(
+                (touched - expected).abs() < 1e-5 / speed + 1e-12,
+                "{touched} s against {expected} s at {speed} m/s"
+            );
             assert_eq!(events.len(), 1);
             // Followed deeper by 1/16 of a step's way, 2.5 mm to 0.25 m, until it is 0.1 m deep across z; 2.5 m are too far.
             assert!(speed > 1e3 || watch.clearance.unwrap() < -0.09, "{:?}", watch.clearance);
@@ -281,7 +284,8 @@ mod tests {
         // The blocks' faces pass 30 mm from each other, somewhere between two steps.
         for speed in [1.0, 30.0, 700.0] {
             let twist = format!("linear_m_per_s = [{speed}, 0.0, 0.0]");
-            let (watch, events) = watch("position_m = [-3.21, 0.23, 0.0]", &twist, 0.01, 1 + (7.0 / speed / 0.01) as u64);
+            let (watch, events) =
+                watch("position_m = [-3.21, 0.23, 0.0]", &twist, 0.01, 1 + (7.0 / speed / 0.01) as u64);
             let clearance = watch.clearance.expect("they pass within a metre");
             assert!((0.03 - 1e-12..0.03 * (1.0 + ERROR.0) + ERROR.1).contains(&clearance), "{clearance} m");
             assert!(watch.touched.is_none() && events.is_empty());
@@ -294,7 +298,10 @@ mod tests {
         let (watch, _) = watch("position_m = [0.3, 0.0, 0.0]", "angular_deg_per_s = [0.0, 0.0, 9000.0]", 0.01, 10);
         let expected = 0.2 - 0.02_f64.sqrt();
         let clearance = watch.clearance.expect("near");
-        assert!((expected - 1e-12..expected * (1.0 + ERROR.0) + ERROR.1).contains(&clearance), "{clearance} {expected}");
+        assert!(
+            (expected - 1e-12..expected * (1.0 + ERROR.0) + ERROR.1).contains(&clearance),
+            "{clearance} {expected}"
+        );
     }
 
     #[test]

@@ -38,9 +38,8 @@ impl MotorWatch {
         let model = world.model();
         let motor = |(actuator, of): (usize, &sim::Actuator)| {
             let (coordinate, torque_limit) = match of.kind {
-                ActuatorKind::JointEffort { coordinate, limit } | ActuatorKind::JointDrive { coordinate, limit, .. } => {
-                    (coordinate, limit)
-                }
+                ActuatorKind::JointEffort { coordinate, limit }
+                | ActuatorKind::JointDrive { coordinate, limit, .. } => (coordinate, limit),
                 ActuatorKind::Thruster { .. } | ActuatorKind::LatchRelease { .. } => return None,
             };
             model.coordinates[coordinate].speed_limit.is_finite().then(|| Motor {

@@ -150,8 +150,7 @@ impl Series {
         let (effort, engaged) = self.eval_law(x, rate - link_rate);
         let slope = if engaged { self.stiffness * at.beta + self.damping * at.theta } else { 0.0 };
         let driven = effort + self.rotor * (rate_end - omega) / step;
-        let rate = if at.theta == 0.0 { omega } else { 0.5 * (omega + rate_end) };
-        Motor { effort, slope, driven, rate, rate_end }
+        Motor { effort, slope, driven, rate_end }
     }
 
     /// Deflection and motor position at the evaluated point, less β times the motor's new rate.

@@ -116,7 +116,11 @@ fn a_motor_is_no_brake_and_lets_itself_be_carried_beyond_its_limit() {
         world.commands_mut()[1].effort = -0.4;
         run(&mut world, 500);
         // The table turns away beneath it, and nothing acts on the wheel: T/I for half a second.
-        assert!((world.state().v[1] - (LIMIT + 0.4 / 0.5 * 0.5)).abs() < 1e-9, "{integrator:?}: {}", world.state().v[1]);
+        assert!(
+            (world.state().v[1] - (LIMIT + 0.4 / 0.5 * 0.5)).abs() < 1e-9,
+            "{integrator:?}: {}",
+            world.state().v[1]
+        );
         assert_eq!(world.effort(1), 0.0);
         world.commands_mut()[0].effort = -TORQUE;
         run(&mut world, 1);
