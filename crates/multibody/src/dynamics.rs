@@ -76,7 +76,7 @@ impl Dynamics {
     ) -> Wrench {
         self.calc_body_wrenches(tree, kin, motion, external);
         let base = self.collect(tree, kin, tau);
-        for joint in tree.joints.iter().filter(|j| j.armature != 0.0 && !j.is_mimic) {
+        for joint in tree.joints.iter().filter(|j| j.armature != 0.0 && !j.is_mimic && !motion.v_dot.is_empty()) {
             let range = joint.v_index..joint.v_index + joint.width;
             for (tau, v_dot) in tau[range.clone()].iter_mut().zip(&motion.v_dot[range]) {
                 *tau += joint.armature * v_dot;
@@ -96,13 +96,17 @@ impl Dynamics {
         self.acc[0] = motion.base;
         for (j, joint) in tree.joints.iter().enumerate() {
             let parent = tree.bodies[j + 1].parent;
-            let (mut rate, mut gain) = (Twist::default(), Twist::default());
+            let mut rate = Twist::default();
             for k in 0..joint.width {
-                let screw = kin.screws[joint.column + k];
-                rate += screw * motion.v[joint.v_index + k];
-                gain += screw * motion.v_dot[joint.v_index + k];
+                rate += kin.screws[joint.column + k] * motion.v[joint.v_index + k];
             }
-            self.acc[j + 1] = self.acc[parent] + gain + kin.vel[parent].cross_motion(&rate);
+            let mut acc = self.acc[parent];
+            if !motion.v_dot.is_empty() {
+                for k in 0..joint.width {
+                    acc += kin.screws[joint.column + k] * motion.v_dot[joint.v_index + k];
+                }
+            }
+            self.acc[j + 1] = acc + kin.vel[parent].cross_motion(&rate);
         }
         for (body, wrench) in self.wrench.iter_mut().enumerate() {
             let momentum = kin.inertia[body].momentum(&kin.vel[body]);
@@ -274,7 +278,7 @@ pub struct Accelerations<'a> {
     pub base: Twist,
     /// Joint rates.
     pub v: &'a [f64],
-    /// Joint accelerations.
+    /// Joint accelerations; empty where all are zero.
     pub v_dot: &'a [f64],
 }
 

@@ -4,8 +4,8 @@
 //!
 //! JᵀGJ within a vehicle is the mass matrix of links whose inertia is increased by S = Σ XᵀGX; between two bodies only
 //! −J_aᵀ S_ab J_b is extra, once per pair of bodies. Vehicles that touch form an island; each island is factored by
-//! itself (UᵀU, upper triangle, row-major: inner loops run along rows and keep one order of addition). Below the diagonal
-//! the matrix is neither written nor read.
+//! itself (Cholesky's method without roots, upper triangle, row-major: inner loops run along rows and keep one order of
+//! addition). Below the diagonal the matrix is neither written nor read.
 
 use crate::contacts::Touch;
 use crate::mechanism::{self, Coupling};
@@ -124,26 +124,31 @@ fn answers(touch: &Touch) -> bool {
     touch.out.g != Mat3::zeros()
 }
 
-/// What touches add to the bodies' own inertia, and between the two bodies of each pair.
+/// What touches add to the bodies' own inertia, and between the two bodies of each pair: summed about B's anchor, then moved
+/// to A's. A pair's touches stand beside each other.
 fn add_touches(model: &Model, ws: &mut Workspace) {
     let Workspace { touches, kin, extra, islands, .. } = ws;
+    let bodies_of = |t: &Touch| [t.body_a, t.body_b];
     islands.cross.clear();
-    for touch in touches.iter().filter(|t| answers(t)) {
-        let (a, b, g) = (touch.body_a, touch.body_b, &touch.out.g);
-        let arm = |body: usize| model.owners.get(body).map(|&(vehicle, _)| touch.point - kin[vehicle].anchor);
-        match (arm(a), arm(b)) {
-            (Some(r_a), Some(r_b)) => {
-                let [own_a, both, own_b] = SpatialMatrix::from_point_of_two(g, &r_a, &r_b);
-                *extra[a].get_or_insert_default() += own_a;
-                *extra[b].get_or_insert_default() += own_b;
-                match islands.cross.last_mut().filter(|(bodies, _)| *bodies == [a, b]) {
-                    Some((_, sum)) => *sum += both,
-                    None => islands.cross.push(([a, b], both)),
-                }
-            }
-            (Some(r), None) => *extra[a].get_or_insert_default() += SpatialMatrix::from_point(g, &r),
-            (None, Some(r)) => *extra[b].get_or_insert_default() += SpatialMatrix::from_point(g, &r),
-            (None, None) => {}
+    for run in touches.chunk_by(|t, u| bodies_of(t) == bodies_of(u)) {
+        let [a, b] = bodies_of(&run[0]);
+        let anchor = |body: usize| model.owners.get(body).map(|&(vehicle, _)| kin[vehicle].anchor);
+        let (anchor_a, anchor_b) = (anchor(a), anchor(b));
+        let Some(origin) = anchor_b.or(anchor_a) else { continue };
+        let mut sum = SpatialMatrix::default();
+        let mut is_stiff = false;
+        for touch in run.iter().filter(|t| answers(t)) {
+            sum += SpatialMatrix::from_point(&touch.out.g, &(touch.point - origin));
+            is_stiff = true;
+        }
+        if !is_stiff {
+            continue;
+        }
+        *extra[if anchor_b.is_some() { b } else { a }].get_or_insert_default() += sum;
+        if let (Some(anchor_a), Some(anchor_b)) = (anchor_a, anchor_b) {
+            let [between, own] = sum.about_first(&(anchor_b - anchor_a));
+            *extra[a].get_or_insert_default() += own;
+            islands.cross.push(([a, b], between));
         }
     }
 }
@@ -216,12 +221,17 @@ fn add_between(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: 
     }
 }
 
+/// The six numbers of a wrench, in the order of a base's freedoms.
+#[inline]
+fn numbers(wrench: &Wrench) -> [f64; 6] {
+    let (m, f) = (&wrench.moment, &wrench.force);
+    [m.x, m.y, m.z, f.x, f.y, f.z]
+}
+
 /// Subtracts the six numbers of a wrench from a row, in the columns of a base's freedoms.
 #[inline]
 fn subtract_base(row: &mut [f64], columns: &[usize], seen: &Wrench) {
-    let (m, f) = (&seen.moment, &seen.force);
-    let numbers = [m.x, m.y, m.z, f.x, f.y, f.z];
-    let first = columns[0];
+    let (numbers, first) = (numbers(seen), columns[0]);
     // Of a base that is free the columns follow on each other.
     if first != HELD && columns[5] == first + 5 {
         row[first..first + 6].iter_mut().zip(numbers).for_each(|(x, number)| *x -= number);
@@ -246,8 +256,7 @@ fn add_within(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: &
             *entry -= value;
             *entry -= if row == column { value } else { 0.0 };
         };
-        let (m, f) = (&seen.moment, &seen.force);
-        for (column, value) in rows.iter().zip([m.x, m.y, m.z, f.x, f.y, f.z]).filter(|(c, _)| **c != HELD) {
+        for (column, value) in rows.iter().zip(numbers(seen)).filter(|(c, _)| **c != HELD) {
             entry(*column, value);
         }
         for moves in dynamics.path(lb) {
@@ -326,27 +335,26 @@ fn write_rhs(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
     let tau = &mut ws.tau[vehicle.v_range()];
     let base = ws.dynamics[i].collect(&vehicle.tree, &ws.kin[i], tau);
     let islands = &mut ws.islands;
-    let rhs = &mut islands.rhs[islands.group[i]];
-    for (k, &row) in islands.rows[i].iter().enumerate().filter(|(_, r)| **r != HELD) {
-        rhs[row] = match k {
-            0..3 => -h * base.moment[k],
-            3..6 => -h * base.force[k - 3],
-            _ => h * (ws.coordinate_lines[vehicle.v0 + k - 6].0 - tau[k - 6]),
-        };
+    let (rhs, rows) = (&mut islands.rhs[islands.group[i]], &islands.rows[i]);
+    for (&row, number) in rows.iter().zip(numbers(&base)).filter(|(row, _)| **row != HELD) {
+        rhs[row] = -h * number;
+    }
+    let range = vehicle.v_range();
+    for ((&row, line), tau) in rows[6..].iter().zip(&ws.coordinate_lines[range.clone()]).zip(&ws.tau[range]) {
+        rhs[row] = h * (line.0 - tau);
     }
 }
 
 fn read_gains(model: &Model, ws: &mut Workspace, i: usize) {
     let vehicle = &model.vehicles[i];
-    let islands = &ws.islands;
-    let rhs = &islands.rhs[islands.group[i]];
-    let gain = |k: usize| if islands.rows[i][k] == HELD { 0.0 } else { rhs[islands.rows[i][k]] };
+    let (rhs, rows) = (&ws.islands.rhs[ws.islands.group[i]], &ws.islands.rows[i]);
+    let gain = |k: usize| if rows[k] == HELD { 0.0 } else { rhs[rows[k]] };
     let mut base = Twist::new(Vec3::new(gain(0), gain(1), gain(2)), Vec3::new(gain(3), gain(4), gain(5)));
     if vehicle.base.is_held() {
         base = ws.drive_gain[i];
     }
-    for k in 0..vehicle.tree.nv {
-        ws.v_gain[vehicle.v0 + k] = gain(6 + k);
+    for (v, &row) in ws.v_gain[vehicle.v_range()].iter_mut().zip(&rows[6..]) {
+        *v = rhs[row];
     }
     ws.base_gain[i] = base;
     ws.dvel[vehicle.body0] = base;
@@ -369,7 +377,8 @@ fn padded(n: usize) -> usize {
     n.next_multiple_of(LANES)
 }
 
-/// A = UᵀU in place, upper triangle, `n` rows of `padded(n)`.
+/// A = WᵀP⁻¹W in place: W upper triangular, P its diagonal of pivots, of which the inverse is left there; `n` rows of
+/// `padded(n)`. (Of UᵀU, U = P^−½ W: here no root stands between a row and the next.)
 fn cholesky(a: &mut [f64], n: usize) -> bool {
     let stride = padded(n);
     for k in 0..n {
@@ -387,8 +396,7 @@ fn cholesky(a: &mut [f64], n: usize) -> bool {
         if pivot.is_nan() || pivot <= 0.0 {
             return false;
         }
-        let inverse = 1.0 / pivot.sqrt();
-        row[k / LANES * LANES..].iter_mut().for_each(|x| *x *= inverse);
+        row[k] = 1.0 / pivot;
     }
     true
 }
@@ -399,8 +407,8 @@ fn subtract_rows<const W: usize>(above: &[f64], row: &mut [f64], k: usize, at: u
     let stride = row.len();
     let Some(own) = row[at..].first_chunk_mut::<W>() else { return W };
     let mut sum = *own;
-    for u in above.chunks_exact(stride) {
-        let (factor, Some(y)) = (u[k], u[at..].first_chunk::<W>()) else { break };
+    for (i, u) in above.chunks_exact(stride).enumerate() {
+        let (factor, Some(y)) = (u[i] * u[k], u[at..].first_chunk::<W>()) else { break };
         for (s, y) in sum.iter_mut().zip(y) {
             *s -= factor * y;
         }
@@ -409,20 +417,20 @@ fn subtract_rows<const W: usize>(above: &[f64], row: &mut [f64], k: usize, at: u
     W
 }
 
-/// x with UᵀU x = b, in place.
+/// x with WᵀP⁻¹W x = b, in place, from what [`cholesky`] left.
 fn back_substitute(u: &[f64], b: &mut [f64]) {
     let (n, stride) = (b.len(), padded(b.len()));
     for k in 0..n {
         let row = &u[k * stride..][..n];
         let (known, rest) = b.split_at_mut(k + 1);
-        let x = known[k] / row[k];
-        known[k] = x;
+        let x = known[k] * row[k];
         rest.iter_mut().zip(&row[k + 1..]).for_each(|(b, u)| *b -= u * x);
     }
     for k in (0..n).rev() {
         let row = &u[k * stride..][..n];
         let (open, known) = b.split_at_mut(k + 1);
-        let value = known.iter().zip(&row[k + 1..]).fold(open[k], |value, (b, u)| value - u * b);
-        open[k] = value / row[k];
+        // What was found last is taken last: a processor sums the rest meanwhile.
+        let value = known.iter().zip(&row[k + 1..]).rev().fold(open[k], |value, (b, u)| value - u * b);
+        open[k] = value * row[k];
     }
 }

@@ -181,8 +181,7 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
         for k in range.clone() {
             ws.v_mid[k] = state.v[k] + if half_gain { 0.5 * ws.v_gain[k] } else { 0.0 };
         }
-        let motion =
-            Accelerations { base: ws.base_acceleration[i], v: &ws.v_mid[range.clone()], v_dot: &ws.zero[range] };
+        let motion = Accelerations { base: ws.base_acceleration[i], v: &ws.v_mid[range], v_dot: &[] };
         let bodies = vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len();
         ws.dynamics[i].calc_body_wrenches(&vehicle.tree, &ws.kin[i], &motion, &ws.external[bodies.clone()]);
         ws.bias[bodies].copy_from_slice(&ws.dynamics[i].wrench);

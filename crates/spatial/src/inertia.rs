@@ -71,11 +71,16 @@ impl Inertia {
     #[inline]
     pub fn transformed(&self, rot: &Mat3, pos: &Vec3) -> Self {
         let mc = rot * self.mc;
-        // I_O' = R I Rᵀ + (2 r·c − …) with r = pos: I + m(r²1 − rrᵀ) + 2(r·mc)1 − r mcᵀ − mc rᵀ.
-        let turned = rot * self.rot * rot.transpose();
+        // I_O' = R I Rᵀ + (2 r·c − …) with r = pos: I + m(r²1 − rrᵀ) + 2(r·mc)1 − r mcᵀ − mc rᵀ; of a symmetric sum the half.
+        let (turned, moved) = (rot * self.rot, self.mass * pos + mc);
         let diagonal = self.mass * pos.norm_squared() + 2.0 * pos.dot(&mc);
-        let outer = pos * (self.mass * pos + mc).transpose() + mc * pos.transpose();
-        Self { mass: self.mass, mc: mc + self.mass * pos, rot: turned - outer + Mat3::from_diagonal_element(diagonal) }
+        let entry = |i: usize, j: usize| {
+            let own = turned[(i, 0)] * rot[(j, 0)] + turned[(i, 1)] * rot[(j, 1)] + turned[(i, 2)] * rot[(j, 2)];
+            own - (pos[i] * moved[j] + mc[i] * pos[j])
+        };
+        let (xy, xz, yz) = (entry(0, 1), entry(0, 2), entry(1, 2));
+        let (xx, yy, zz) = (entry(0, 0) + diagonal, entry(1, 1) + diagonal, entry(2, 2) + diagonal);
+        Self { mass: self.mass, mc: mc + self.mass * pos, rot: Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) }
     }
 
     /// Momentum of the twist about the same point: angular (moment slot) and linear (force slot).
@@ -176,11 +181,16 @@ impl SpatialMatrix {
         Self { ma: cross_columns(r, &fa), ml, fa, fl: *g }
     }
 
-    /// The same for two origins, from which the point is at `r_a` and `r_b`: Xₐᵀ G Xₐ, Xₐᵀ G X_b and X_bᵀ G X_b.
+    /// A stiffness between two bodies that is given about B's origin, which is at `d` from A's: with the forces about A's origin
+    /// and the velocities about B's, and with both about A's.
     #[inline]
-    pub fn from_point_of_two(g: &Mat3, r_a: &Vec3, r_b: &Vec3) -> [Self; 3] {
-        let (a, b) = (Self::from_point(g, r_a), Self::from_point(g, r_b));
-        [a, Self { ma: cross_columns(r_a, &b.fa), fa: b.fa, ..a }, b]
+    pub fn about_first(&self, d: &Vec3) -> [Self; 2] {
+        // m_A = m_B + d × f, and v_B = v_A − d × ω.
+        let between =
+            Self { ma: self.ma + cross_columns(d, &self.fa), ml: self.ml + cross_columns(d, &self.fl), ..*self };
+        let turned = |m: &Mat3| cross_columns(d, &m.transpose()).transpose();
+        let own = Self { ma: between.ma + turned(&between.ml), fa: between.fa + turned(&between.fl), ..between };
+        [between, own]
     }
 
     /// Image of a twist.
@@ -273,7 +283,8 @@ mod tests {
         let (r_a, r_b) = (Vec3::new(0.3, -0.7, 1.1), Vec3::new(-0.5, 0.2, 0.9));
         let v = Twist::new(Vec3::new(0.3, 0.1, -0.4), Vec3::new(1.0, 0.2, 0.7));
         let about = |left: &Vec3, right: &Vec3| Wrench::from_force_at(g * v.at(right), left);
-        let [aa, ab, bb] = SpatialMatrix::from_point_of_two(&g, &r_a, &r_b);
+        let bb = SpatialMatrix::from_point(&g, &r_b);
+        let [ab, aa] = bb.about_first(&(r_a - r_b));
         for (matrix, wrench) in [(aa, about(&r_a, &r_a)), (ab, about(&r_a, &r_b)), (bb, about(&r_b, &r_b))] {
             let off = matrix.mul(&v) - wrench;
             assert!(off.moment.norm() + off.force.norm() < ROUND_OFF);
