@@ -49,7 +49,9 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     }
     let all = arguments.files.len();
     match (bad, doubtful) {
-        (0, 1..) if arguments.strict => Err(anyhow!("{doubtful} of {all} files have warnings, and --strict refuses them")),
+        (0, 1..) if arguments.strict => {
+            Err(anyhow!("{doubtful} of {all} files have warnings, and --strict refuses them"))
+        }
         (0, _) => Ok(Status::AsExpected),
         _ => Err(anyhow!("{bad} of {all} files cannot be used")),
     }
@@ -70,7 +72,8 @@ fn verdict(warnings: usize) -> String {
 }
 
 fn check_robot(file: &Path, arguments: &Arguments) -> anyhow::Result<Sound> {
-    let loaded = load_urdf(file, &SearchPaths::new(arguments.package_paths.clone())).map_err(|e| anyhow!(in_order(&e)))?;
+    let loaded =
+        load_urdf(file, &SearchPaths::new(arguments.package_paths.clone())).map_err(|e| anyhow!(in_order(&e)))?;
     let (robot, tree) = (&loaded.robot, Tree::from_description(&loaded.robot));
     let line = format!(
         "Robot \"{}\": {} links in {} moving bodies, {} joint freedoms, {:.3} kg",

@@ -46,8 +46,13 @@ impl SearchPaths {
                 return Err(MeshError::UnknownScheme { name: shortened(name), scheme: shortened(scheme) });
             }
         };
-        let found = tried.iter().find(|p| p.is_file()).cloned();
-        found.ok_or_else(|| MeshError::NotFound { name: shortened(name), tried })
+        match (tried.iter().find(|p| p.is_file()), &tried[..]) {
+            (Some(found), _) => Ok(found.clone()),
+            (None, [only]) if only.parent().is_some_and(|folder| !folder.is_dir()) => {
+                Err(MeshError::NoFolder { folder: only.parent().unwrap_or(only).into() })
+            }
+            _ => Err(MeshError::NotFound { name: shortened(name), tried }),
+        }
     }
 
     /// The file in every package of that name.
@@ -119,7 +124,10 @@ mod tests {
         let search = SearchPaths::new(["/nowhere/share"]);
         let error = search.find("package://arm/meshes/a.stl", Path::new("/nowhere/urdf")).expect_err("not there");
         let said = error.to_string();
-        assert!(said.contains("\"arm\"") && said.contains("/nowhere/share") && said.contains("/nowhere/urdf"), "{said}");
+        assert!(
+            said.contains("\"arm\"") && said.contains("/nowhere/share") && said.contains("/nowhere/urdf"),
+            "{said}"
+        );
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use super::doubts::UrdfDoubt;
 use super::errors::{UrdfProblem, cut};
-use super::findings::Findings;
 use super::facts::{Facts, JointFact, part, tag_in};
+use super::findings::Findings;
 use super::nearest::find_nearest;
 use super::schema::{ROBOT, Tag};
 use super::walk::{numbers_of, own_attribute, text_of, version_of};
@@ -63,7 +63,8 @@ fn check_limit(joint: &JointFact<'_, '_>, tag: &'static Tag, findings: &mut Find
     } else if let Some([lower, upper]) = bounds_of(limit, limit_tag).filter(|[lower, upper]| lower >= upper) {
         findings.doubt(start, joint.subject(), UrdfDoubt::NoRange { lower, upper });
     }
-    if numbers_of(limit, limit_tag, "effort") == Some([0.0]) {
+    // Nobody drives a follower.
+    if joint.mimic.is_none() && numbers_of(limit, limit_tag, "effort") == Some([0.0]) {
         findings.doubt(start, joint.subject(), UrdfDoubt::NoEffort);
     }
 }

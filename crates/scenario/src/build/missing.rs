@@ -81,8 +81,7 @@ const BASE: &str = "the base moves freely, but nothing of the vehicle resists it
 /// In the words of the file's own warning, which has the line.
 fn of_joint(joint: &str, warnings: &UrdfWarnings) -> String {
     let subject = format!("joint \"{joint}\"");
-    let is_it =
-        |doubt: &UrdfDoubt| matches!(doubt, UrdfDoubt::MovesNoMass { .. } | UrdfDoubt::MovesNoInertia { .. });
+    let is_it = |doubt: &UrdfDoubt| matches!(doubt, UrdfDoubt::MovesNoMass { .. } | UrdfDoubt::MovesNoInertia { .. });
     let told = warnings.iter().find(|w| w.subject == subject && is_it(&w.what));
     told.map_or_else(|| format!("{subject}: what it moves resists it with no inertia; {ARMATURE}"), ToString::to_string)
 }

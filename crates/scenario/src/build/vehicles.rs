@@ -25,12 +25,7 @@ pub(super) struct Loaded {
 
 /// Loads every vehicle's robot; `None` if one cannot be had, since nothing else can be checked then. What is wrong with a
 /// file is told where it is first asked for.
-pub(super) fn load(
-    scenario: &Scenario,
-    plan: &[Entry<'_>],
-    stock: &Stock,
-    faults: &mut Faults<'_>,
-) -> Option<Loaded> {
+pub(super) fn load(scenario: &Scenario, plan: &[Entry<'_>], stock: &Stock, faults: &mut Faults<'_>) -> Option<Loaded> {
     let dir = scenario.source.file_dir();
     let (mut loaded, mut warnings) = (Vec::with_capacity(scenario.vehicles.len()), Vec::new());
     let mut refused = Vec::new();
