@@ -146,6 +146,40 @@ fn check_tells_every_fault_of_a_robot() {
 }
 
 #[test]
+fn check_tells_each_doubt_once_and_strict_refuses_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let (robot, scenario) = (place(&dir, "odd.urdf"), place(&dir, "odd.toml"));
+    let body = "<inertial><mass value='1'/><inertia ixx='0.1' iyy='0.1' izz='0.31'/></inertial>";
+    fs::write(&robot, format!("<robot name='r'><link name='a'>{body}</link></robot>")).unwrap();
+    let vehicle = |name: &str| format!("[[vehicle]]\nname = \"{name}\"\nurdf = \"odd.urdf\"\n");
+    let head = "name = \"odd\"\nseed = 1\nduration_s = 1.0\n";
+    fs::write(&scenario, format!("{head}{}{}", vehicle("a"), vehicle("b"))).unwrap();
+    for file in [&robot, &scenario] {
+        let output = softdock(&["check", text(file)]);
+        let (out, said) = (String::from_utf8_lossy(&output.stdout).into_owned(), error_of(&output));
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        assert_eq!((said.matches("warning: ").count(), said.matches("odd.urdf:1:").count()), (1, 1), "{said}");
+        assert!(out.contains("loads, with 1 warning."), "{out}");
+        let strict = softdock(&["check", "--strict", text(file)]);
+        assert_eq!(strict.status.code(), Some(3));
+        assert!(error_of(&strict).contains("--strict refuses"), "{}", error_of(&strict));
+    }
+    let sound = softdock(&["check", "--strict", "robots/servicer/servicer.urdf"]);
+    assert_eq!(sound.status.code(), Some(0), "{}", error_of(&sound));
+}
+
+#[test]
+fn check_tells_a_xacro_source_how_to_become_a_urdf() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = place(&dir, "arm.urdf.xacro");
+    fs::write(&file, "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:arm/></robot>").unwrap();
+    let output = softdock(&["check", text(&file)]);
+    let said = error_of(&output);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(said.contains("xacro") && said.contains("arm.urdf`") && said.matches("<xacro:arm>").count() == 1, "{said}");
+}
+
+#[test]
 fn new_writes_a_scenario_that_captures_and_never_overwrites() {
     let output = softdock(&["new", "a/b"]);
     assert_eq!(output.status.code(), Some(3));

@@ -27,6 +27,8 @@ const LARGEST_COORDINATE_M: f64 = 1e15;
 pub enum MeshError {
     #[error("mesh {name} is not found; tried {}; correct the path", listed(.tried))]
     NotFound { name: String, tried: Vec<PathBuf> },
+    #[error("folder {} does not exist; correct the path, or bring the meshes", .folder.display())]
+    NoFolder { folder: PathBuf },
     #[error(
         "package \"{package}\" is not found in {}every folder from {} upwards; name the folder that holds it (`--package-path`, package_paths of a vehicle, ROS_PACKAGE_PATH or AMENT_PREFIX_PATH)",
         searched(.named), .above.display()
@@ -61,7 +63,16 @@ fn searched(named: &[PathBuf]) -> String {
 impl MeshError {
     /// Whether there is no file at all, as where a URDF was copied without its meshes.
     pub fn is_missing(&self) -> bool {
-        matches!(self, Self::NotFound { .. } | Self::NoPackage { .. })
+        matches!(self, Self::NotFound { .. } | Self::NoFolder { .. } | Self::NoPackage { .. })
+    }
+
+    /// What is missing as a whole, where that is more than a file.
+    pub(crate) fn missing_place(&self) -> Option<String> {
+        match self {
+            Self::NoFolder { folder } => Some(folder.display().to_string()),
+            Self::NoPackage { package, .. } => Some(package.clone()),
+            _ => None,
+        }
     }
 }
 

@@ -46,8 +46,13 @@ impl SearchPaths {
                 return Err(MeshError::UnknownScheme { name: shortened(name), scheme: shortened(scheme) });
             }
         };
-        let found = tried.iter().find(|p| p.is_file()).cloned();
-        found.ok_or_else(|| MeshError::NotFound { name: shortened(name), tried })
+        match (tried.iter().find(|p| p.is_file()), &tried[..]) {
+            (Some(found), _) => Ok(found.clone()),
+            (None, [only]) if only.parent().is_some_and(|folder| !folder.is_dir()) => {
+                Err(MeshError::NoFolder { folder: only.parent().unwrap_or(only).into() })
+            }
+            _ => Err(MeshError::NotFound { name: shortened(name), tried }),
+        }
     }
 
     /// The file in every package of that name.

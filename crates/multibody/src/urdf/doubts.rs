@@ -17,7 +17,9 @@ pub enum UrdfDoubt {
     BlanksFirst,
     #[error("<{parent}> has more than one <{tag}>: they agree, and the first counts; keep one")]
     RepeatedTag { parent: &'static str, tag: &'static str },
-    #[error("<geometry> holds <{tag}>, which is no shape of URDF: {loss}; use box, sphere, cylinder, capsule or mesh")]
+    #[error(
+        "<geometry> holds <{tag}>, which is no shape of URDF: it is {loss}; use box, sphere, cylinder, capsule or mesh"
+    )]
     UnknownShape { tag: String, loss: Loss },
     #[error("mesh scale \"{text}\" has more than 3 numbers: the first three count; delete the others")]
     LongScale { text: String },
@@ -25,10 +27,10 @@ pub enum UrdfDoubt {
     Unseen { tag: &'static str, attribute: &'static str, text: String, rule: &'static str },
     #[error("{tag} {attribute} \"{text}\" {rule}: the colour is passed over")]
     NoColour { tag: &'static str, attribute: &'static str, text: String, rule: &'static str },
-    #[error("{mesh}: {loss}")]
+    #[error("{mesh}: it is {loss}")]
     Mesh { mesh: MeshError, loss: Loss },
-    #[error("{mesh}: the {count} meshes that are named in it are left out, so {loss}")]
-    Package { mesh: MeshError, count: usize, loss: Loss },
+    #[error("{place}: {} {loss}", meshes(.count))]
+    Meshes { place: MeshError, count: usize, loss: Loss },
     #[error("a {kind} joint without <limit>: it has none; add <limit lower=… upper=… effort=… velocity=…/>{advice}")]
     MissingLimit { kind: &'static str, advice: &'static str },
     #[error("limit gives neither lower nor upper: the joint has no stops; add both{advice}")]
@@ -63,6 +65,10 @@ pub enum UrdfDoubt {
     MovesNoInertia { link: String },
 }
 
+fn meshes(count: &usize) -> String {
+    if *count == 1 { "the mesh in it is".to_owned() } else { format!("the {count} meshes in it are") }
+}
+
 /// What a shape that cannot be had leaves missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Loss {
@@ -75,9 +81,9 @@ pub struct Loss {
 impl std::fmt::Display for Loss {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match (self.seen, self.touching) {
-            (true, true) => "it is neither drawn nor felt, and a contact that needs it is refused",
-            (_, true) => "it is not felt, and a contact that needs it is refused",
-            _ => "it is not drawn",
+            (true, true) => "neither drawn nor felt, and a contact that needs what is missing is refused",
+            (_, true) => "not felt, and a contact that needs what is missing is refused",
+            _ => "not drawn",
         })
     }
 }

@@ -30,7 +30,7 @@ pub enum UrdfProblem {
     MisplacedTag { tag: String, parent: &'static str, home: &'static str },
     #[error("<{parent}> has no <{tag}>; add one")]
     MissingTag { parent: &'static str, tag: &'static str },
-    #[error("<{parent}> has more than one <{tag}>, and they differ; keep one")]
+    #[error("<{parent}> has more than one <{tag}>; keep one")]
     RepeatedTag { parent: &'static str, tag: &'static str },
     #[error("<geometry> holds no shape; put one of <box>, <sphere>, <cylinder>, <capsule>, <mesh> in it")]
     NoShape,

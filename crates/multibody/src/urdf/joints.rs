@@ -63,7 +63,8 @@ fn check_limit(joint: &JointFact<'_, '_>, tag: &'static Tag, findings: &mut Find
     } else if let Some([lower, upper]) = bounds_of(limit, limit_tag).filter(|[lower, upper]| lower >= upper) {
         findings.doubt(start, joint.subject(), UrdfDoubt::NoRange { lower, upper });
     }
-    if numbers_of(limit, limit_tag, "effort") == Some([0.0]) {
+    // Nobody drives a follower.
+    if joint.mimic.is_none() && numbers_of(limit, limit_tag, "effort") == Some([0.0]) {
         findings.doubt(start, joint.subject(), UrdfDoubt::NoEffort);
     }
 }

@@ -5,7 +5,7 @@
 //! | not there | a doubt: it is not drawn | a doubt: it is not felt, and a contact that needs it is refused |
 //! | there and unusable | a doubt: it is not drawn | an error: somebody meant it to touch |
 //!
-//! A package that is nowhere takes all its meshes with it and is one trouble, not one for each of them.
+//! A package or folder that is nowhere takes all its meshes with it and is one trouble, not one for each of them.
 
 use super::doubts::{Loss, UrdfDoubt};
 use super::facts::{Facts, LinkFact};
@@ -87,13 +87,13 @@ fn meshes_of<'a, 'i: 'a>(link: &LinkFact<'a, 'i>) -> impl Iterator<Item = (Node<
 }
 
 fn tell(known: &Meshes, lost: BTreeMap<MeshKey, Lost>, findings: &mut Findings<'_>) {
-    let mut packages: BTreeMap<&str, LostPackage<'_>> = BTreeMap::new();
+    let mut places: BTreeMap<String, LostPlace<'_>> = BTreeMap::new();
     for (key, lost) in lost {
         let Some(Err(error)) = known.get(&key) else { continue };
-        if let MeshError::NoPackage { package, .. } = error {
-            let all = packages.entry(package).or_insert(LostPackage { count: 0, all: None, error });
-            all.count += 1;
-            all.all = Some(match all.all.take() {
+        if let Some(place) = error.missing_place() {
+            let place = places.entry(place).or_insert(LostPlace { count: 0, lost: None, error });
+            place.count += 1;
+            place.lost = Some(match place.lost.take() {
                 Some(first) => first.and(lost),
                 None => lost,
             });
@@ -103,17 +103,17 @@ fn tell(known: &Meshes, lost: BTreeMap<MeshKey, Lost>, findings: &mut Findings<'
             findings.add(lost.offset, lost.subject, error.clone().into());
         }
     }
-    for LostPackage { count, all, error } in packages.into_values() {
-        let Some(lost) = all else { continue };
-        let doubt = UrdfDoubt::Package { mesh: error.clone(), count, loss: lost.loss };
+    for LostPlace { count, lost, error } in places.into_values() {
+        let Some(lost) = lost else { continue };
+        let doubt = UrdfDoubt::Meshes { place: error.clone(), count, loss: lost.loss };
         findings.doubt(lost.offset, lost.subject, doubt);
     }
 }
 
-/// Meshes that went with their package, which is told at the first of them.
-struct LostPackage<'a> {
+/// Meshes that went with their package or folder, which is told at the first of them.
+struct LostPlace<'a> {
     count: usize,
-    all: Option<Lost>,
+    lost: Option<Lost>,
     error: &'a MeshError,
 }
 

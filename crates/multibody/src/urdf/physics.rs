@@ -35,7 +35,7 @@ pub(crate) fn check_inertias(facts: &Facts<'_, '_>, findings: &mut Findings<'_>)
         } else if inertial.mass == 0.0 && !inertial.is_nothing() {
             findings.doubt(inertial.offset, link.subject(), UrdfDoubt::NoMass);
         }
-        if let (Some(fault), false) = (triangle_fault(inertial), is_indefinite(inertial)) {
+        if let (Some(fault), false) = (triangle_fault(inertial), is_indefinite(inertial) || is_point(inertial)) {
             findings.doubt(inertial.offset, link.subject(), UrdfDoubt::NotRigid(fault));
         }
     }
@@ -56,6 +56,11 @@ fn triangle_fault(inertial: &InertialFact) -> Option<String> {
     let name = |i: usize| ["Ixx", "Iyy", "Izz"][i];
     let (ta, tb, tc) = (t[(a, a)], t[(b, b)], t[(largest, largest)]);
     Some(format!("inertia violates {} + {} ≥ {} ({ta} + {tb} < {tc})", name(a), name(b), name(largest)))
+}
+
+/// Whether what it has for a tensor is none.
+fn is_point(inertial: &InertialFact) -> bool {
+    moments(&inertial.tensor)[2] <= POINT_M * POINT_M * inertial.mass
 }
 
 fn is_indefinite(inertial: &InertialFact) -> bool {

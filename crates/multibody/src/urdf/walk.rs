@@ -99,10 +99,11 @@ struct Repeats<'a, 'i, 'r> {
 }
 
 impl Repeats<'_, '_, '_> {
-    /// A tag that stands twice and says the same twice is only odd.
+    /// A tag that stands twice and says the same twice is only odd. Not so a mass: it could be that of a second link.
     fn check(&self, subject: &str, findings: &mut Findings<'_>) {
         let Self { first, rest, parent, tag } = self;
-        let differs = |n: &&Node<'_, '_>| rest.len() > MOST_REPEATS || !do_agree(*first, **n, tag);
+        let is_slip = rest.len() > MOST_REPEATS || *parent == "inertial" || tag.name == "inertial";
+        let differs = |n: &&Node<'_, '_>| is_slip || !do_agree(*first, **n, tag);
         if let Some(other) = rest.iter().find(differs) {
             findings.add(other.range().start, subject, UrdfProblem::RepeatedTag { parent, tag: tag.name });
         } else if let Some(second) = rest.first() {

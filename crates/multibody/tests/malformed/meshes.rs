@@ -1,6 +1,7 @@
-//! Broken mesh files: each is told with the URDF's place, the link, and the mesh file with what is wrong in it.
+//! Broken mesh files: each is told with the URDF's place, the link, and the mesh file with what is wrong in it. They are
+//! errors where a collision asks for them; where only a visual does, or the file is not there, the robot loads without.
 
-use crate::table::{Case, check, robot};
+use crate::table::{Case, check, check_doubts, robot};
 use std::path::{Path, PathBuf};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -15,7 +16,7 @@ fn case(dir: &Path, name: &'static str, file: &str, content: impl AsRef<[u8]>, f
 
 fn asking_for(file: &str, scale: &str) -> String {
     robot(&format!(
-        "<link name=\"palm\"><visual>\n<geometry><mesh filename=\"{file}\" {scale}/></geometry></visual></link>"
+        "<link name=\"palm\"><collision>\n<geometry><mesh filename=\"{file}\" {scale}/></geometry></collision></link>"
     ))
 }
 
@@ -175,27 +176,81 @@ fn broken_collada_is_told_with_its_line() {
 }
 
 #[test]
-fn meshes_that_cannot_be_had_are_told_with_the_places_tried() {
+fn meshes_that_cannot_be_used_are_told() {
+    let d = &directory("unusable_meshes");
+    let fault = |name, file: &str, faults: &[&str]| Case::new(name, asking_for(file, ""), faults);
+    check(
+        vec![
+            fault("scheme", "https://example.org/hand.stl", &["bad.urdf:3:", "link \"palm\"", "unknown form https://"]),
+            fault("empty name", "", &["bad.urdf:3:", "link \"palm\"", "mesh filename \"\" is empty"]),
+            case(d, "extension", "hand.step", "ISO-10303-21;", &["unknown extension \"step\"", "stl, obj or dae"]),
+            Case::new("zero scale", asking_for("x.stl", "scale=\"1 0 1\""), &["link \"palm\"", "flattens the mesh"]),
+        ],
+        d,
+    );
+}
+
+#[test]
+fn meshes_that_are_not_there_leave_the_robot_without_them() {
     let d = &directory("missing_meshes");
     std::fs::create_dir_all(d.join("folder.stl")).expect("a folder can be made");
     let missing = |name, file: &str, faults: &[&str]| {
         let mut case = Case::new(name, asking_for(file, ""), faults);
-        case.expected.extend(["bad.urdf:3:".into(), "link \"palm\"".into()]);
+        case.expected.extend([
+            "bad.urdf:3:".into(),
+            "link \"palm\"".into(),
+            "contact that needs what is missing is refused".into(),
+        ]);
         case
     };
-    check(
+    let hand = "<geometry><mesh filename=\"package://hand/a.stl\"/></geometry>";
+    let other = hand.replace("a.stl", "b.stl");
+    let two = robot(&format!(
+        "<link name=\"palm\">\n<visual>{hand}</visual><collision>{hand}</collision><visual>{other}</visual></link>"
+    ));
+    check_doubts(
         vec![
-            missing("missing", "meshes/hand.stl", &["is not found", "missing_meshes/meshes/hand.stl"]),
+            missing(
+                "missing",
+                "meshes/hand.stl",
+                &["missing_meshes/meshes does not exist", "the mesh in it is not felt"],
+            ),
             missing(
                 "package",
                 "package://arm_description/hand.stl",
-                &["is not found", "missing_meshes/arm_description/hand.stl"],
+                &["\"arm_description\" is not found", "missing_meshes"],
             ),
-            missing("scheme", "https://example.org/hand.stl", &["unknown form https://"]),
             missing("directory", "folder.stl", &["is not found"]),
-            missing("empty name", "", &["mesh filename \"\" is empty"]),
-            case(d, "extension", "hand.step", "ISO-10303-21;", &["unknown extension \"step\"", "stl, obj or dae"]),
-            Case::new("zero scale", asking_for("x.stl", "scale=\"1 0 1\""), &["link \"palm\"", "flattens the mesh"]),
+            Case::new(
+                "package of two meshes",
+                two,
+                &["bad.urdf:3:", "the 2 meshes in it are neither drawn nor felt", "--package"],
+            ),
+        ],
+        d,
+    );
+}
+
+#[test]
+fn what_spoils_only_the_looks_is_left_out() {
+    let d = &directory("unseen");
+    std::fs::write(d.join("cut.stl"), "").expect("the mesh file can be written");
+    let seen = |file: &str, scale: &str| asking_for(file, scale).replace("collision", "visual");
+    let shape = |geometry: &str| {
+        robot(&format!("<link name=\"palm\"><visual>\n<geometry>{geometry}</geometry></visual></link>"))
+    };
+    let red = "<material name=\"red\">\n<color rgba=\"255 0 0 1\"/></material><link name=\"palm\"/>";
+    check_doubts(
+        vec![
+            Case::new("broken", seen("cut.stl", ""), &["bad.urdf:3:", "link \"palm\"", "too few", "it is not drawn"]),
+            Case::new(
+                "flat",
+                seen("cut.stl", "scale=\"1 0 1\""),
+                &["bad.urdf:3:", "flattens", "the visual is left out"],
+            ),
+            Case::new("no radius", shape("<sphere radius=\"0.0\"/>"), &["bad.urdf:3:", "not positive", "is left out"]),
+            Case::new("no shape", shape("<plane normal=\"0 0 1\"/>"), &["bad.urdf:3:", "<plane>", "it is not drawn"]),
+            Case::new("no colour", robot(red), &["bad.urdf:3:", "rgba \"255 0 0 1\"", "the colour is passed over"]),
         ],
         d,
     );

@@ -1,10 +1,11 @@
 //! URDF that is sound XML but no possible mechanism.
 
-use crate::table::{Case, SOUND_INERTIAL, check, joint, link, robot, robot_with_inertial, robot_with_joint};
+use crate::table::{Case, check, joint, link, robot, robot_with_inertial, robot_with_joint};
 use multibody::{SearchPaths, parse_urdf};
 use std::path::Path;
 
-fn inertial(mass: &str, tensor: &str) -> String {
+/// A robot of one link with this mass and tensor.
+pub fn inertial(mass: &str, tensor: &str) -> String {
     robot_with_inertial(&format!("<inertial><mass value=\"{mass}\"/><inertia {tensor}/></inertial>"))
 }
 
@@ -14,56 +15,18 @@ fn shape(geometry: &str) -> String {
 
 #[test]
 fn impossible_bodies_are_told() {
-    let palm = &["bad.urdf:3:1", "link \"palm\"", "check units in bad.urdf"];
+    let palm = &["bad.urdf:3:1", "link \"palm\"", "check its units"];
     let with = |fault: &str| palm.iter().copied().chain([fault]).map(str::to_owned).collect::<Vec<_>>();
     let case = |name, text, fault| Case { name, text, expected: with(fault) };
     check(
         vec![
             case("negative mass", inertial("-1", r#"ixx="1" iyy="1" izz="1""#), "mass -1 kg is not positive"),
-            case(
-                "triangle inequality",
-                inertial("1", r#"ixx="0.10" iyy="0.10" izz="0.31""#),
-                "inertia violates Ixx + Iyy ≥ Izz (0.1 + 0.1 < 0.31)",
-            ),
-            case(
-                "triangle inequality, turned",
-                inertial("1", r#"ixx="0.2" ixy="0.105" iyy="0.2" izz="0.08""#),
-                "I1 + I2 ≥ I3",
-            ),
             case("negative moment", inertial("1", r#"ixx="-0.1" iyy="0.1" izz="0.1""#), "not positive definite"),
             case(
                 "products larger than moments",
                 inertial("1", r#"ixx="1" ixy="2" iyy="1" izz="1""#),
                 "not positive definite",
             ),
-            case("mass without inertia", inertial("3", r#"ixx="0" iyy="0" izz="0""#), "not positive definite"),
-        ],
-        Path::new("."),
-    );
-}
-
-#[test]
-fn joints_that_move_nothing_are_told() {
-    let tip_without_mass = robot(&format!("{}<link name=\"tip\"/>\n{}", link("base"), joint("elbow", "base", "tip")));
-    let far_mass = robot(&format!(
-        "{}<link name=\"mid\"/>{}\n{}{}",
-        link("base"),
-        link("tip"),
-        joint("elbow", "base", "mid"),
-        joint("wrist", "mid", "tip"),
-    ));
-    let ghost = SOUND_INERTIAL.replace("value=\"1\"", "value=\"0\"");
-    let mass_forgotten =
-        robot(&format!("{}\n<link name=\"tip\">{ghost}</link>{}", link("base"), joint("elbow", "base", "tip")));
-    check(
-        vec![
-            Case::new(
-                "massless tip",
-                tip_without_mass,
-                &["bad.urdf:3:1", "joint \"elbow\"", "link \"tip\"", "no mass"],
-            ),
-            Case::new("massless between", far_mass, &["bad.urdf:3:1", "joint \"elbow\"", "link \"mid\"", "no mass"]),
-            Case::new("inertia without mass", mass_forgotten, &["bad.urdf:3", "link \"tip\"", "an inertia but mass 0"]),
         ],
         Path::new("."),
     );
@@ -81,22 +44,11 @@ fn impossible_joints_are_told() {
     check(
         vec![
             elbow("zero axis", "revolute", &format!("<axis xyz=\"0 0 0\"/>{limit}"), "no direction"),
-            elbow("no limit", "revolute", "", "a revolute joint needs a <limit>"),
-            elbow("no limit, sliding", "prismatic", "", "a prismatic joint needs a <limit>"),
-            elbow("empty limit", "revolute", "<limit effort=\"1\" velocity=\"1\"/>", "neither lower nor upper"),
-            elbow("crossed limits", "revolute", "<limit lower=\"1\" upper=\"-1\"/>", "lower 1 is above upper -1"),
             elbow("negative effort", "revolute", "<limit lower=\"0\" upper=\"1\" effort=\"-3\"/>", "effort \"-3\""),
             elbow("negative damping", "revolute", &format!("{limit}<dynamics damping=\"-0.1\"/>"), "damping \"-0.1\""),
             elbow("infinite place", "fixed", "<origin xyz=\"0 0 1e999\"/>", "\"1e999\" is not a finite number"),
             elbow("absurd place", "fixed", "<origin xyz=\"0 0 1e30\"/>", "beyond 1e15"),
-            elbow(
-                "follows nobody",
-                "revolute",
-                &format!("{limit}<mimic joint=\"elbwo\"/>"),
-                "\"elbwo\", which does not exist",
-            ),
             elbow("follows itself", "revolute", &format!("{limit}<mimic joint=\"elbow\"/>"), "elbow → elbow"),
-            elbow("fixed and follows", "fixed", "<mimic joint=\"elbow\"/>", "a fixed joint"),
             Case::new("circle of mimics", circle, &["bad.urdf:2", "joint \"j\"", "j → k → j"]),
         ],
         Path::new("."),

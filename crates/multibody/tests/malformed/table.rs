@@ -39,6 +39,21 @@ pub fn check(cases: Vec<Case>, base_dir: &Path) {
     assert!(failures.is_empty(), "\n{}", failures.join("\n\n"));
 }
 
+/// Loads every case, and checks that each loads with its warning and no other.
+pub fn check_doubts(cases: Vec<Case>, base_dir: &Path) {
+    assert!(!cases.is_empty());
+    let mut failures = Vec::new();
+    for case in cases {
+        let loaded = parse_urdf(&case.text, Path::new("bad.urdf"), base_dir, &SearchPaths::default());
+        let said = loaded.map_or_else(|e| format!("it does not load:\n{e}"), |l| l.warnings.to_string());
+        let missing: Vec<&String> = case.expected.iter().filter(|e| !said.contains(*e)).collect();
+        if !missing.is_empty() || said.lines().count() != 1 {
+            failures.push(format!("{}: one line with {missing:?} is not:\n{said}", case.name));
+        }
+    }
+    assert!(failures.is_empty(), "\n{}", failures.join("\n\n"));
+}
+
 fn message_of(text: String, base_dir: std::path::PathBuf) -> String {
     let (tell, hear) = mpsc::channel();
     std::thread::spawn(move || {
