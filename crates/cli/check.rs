@@ -3,6 +3,7 @@
 use crate::Status;
 use anyhow::anyhow;
 use softdock::multibody::{SearchPaths, Tree, load_urdf};
+use softdock::scenario::recording::{recorder_plan, scene};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `softdock check`.
@@ -55,6 +56,7 @@ fn check_robot(file: &Path, arguments: &Arguments) -> anyhow::Result<String> {
 fn check_scenario(file: &Path, arguments: &Arguments) -> anyhow::Result<String> {
     let scenario = softdock::scenario::load(file, &arguments.set)?;
     let mission = softdock::scenario::build(&scenario)?;
+    recorder_plan(&mission, &scene(&mission))?;
     let model = mission.world.model();
     Ok(format!(
         "Scenario \"{}\": {} vehicles, {} contact pairs, {} actuators, {} steps of {} s",

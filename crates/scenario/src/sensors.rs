@@ -46,7 +46,10 @@ pub(crate) fn of_mission(mission: &Mission) -> Result<Vec<Sensor>, Vec<ScenarioE
     errors.extend(sensors.iter().filter(|s| s.delay < 0.0).map(|sensor| {
         let late = scenario.effects.iter().position(|e| e.name == "sensor-delay").unwrap_or_default();
         let (name, s) = (&sensor.name, sensor.delay);
-        let reason = format!("makes {name} {:.3e} s early, and a run cannot record what is yet to come", -s);
+        let reason = format!(
+            "makes {name} {:.3e} s early, and a run cannot record what is yet to come; leave the effect out of runs",
+            -s
+        );
         scenario.complaint(&format!("effect[{late}].delay"), reason)
     }));
     if errors.is_empty() { Ok(sensors) } else { Err(errors) }
