@@ -12,6 +12,12 @@ const ORDER: [&str; 10] =
 /// The wall.
 const LONGEST_FILE: usize = 600;
 
+/// What a newcomer reads in one go.
+const LONGEST_README: usize = 200;
+
+/// Files that the documents tell a reader to write.
+const WRITTEN_BY_THE_READER: [&str; 2] = ["scenarios/my-capture.toml", "scenarios/guide.toml"];
+
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -90,4 +96,56 @@ fn the_top_level_is_bare() {
         let name = entry.file_name().into_string().unwrap();
         assert!(name.starts_with('.') || allowed.contains(&name.as_str()), "{name} does not belong at the top level");
     }
+}
+
+#[test]
+fn the_readme_is_short() {
+    let lines = fs::read_to_string(root().join("README.md")).unwrap().lines().count();
+    assert!(
+        lines <= LONGEST_README,
+        "README.md has {lines} lines; tables belong to tests/tables, how-tos to the guide"
+    );
+}
+
+/// The README, the tables of results and the guide.
+fn documents() -> Vec<PathBuf> {
+    let mut found = vec![root().join("README.md")];
+    for folder in ["tests/tables", "crates/cli/guide"] {
+        let entries = fs::read_dir(root().join(folder)).unwrap().map(|e| e.unwrap().path());
+        found.extend(entries.filter(|p| p.extension().is_some_and(|e| e == "md")));
+    }
+    found
+}
+
+/// Words of a text that are paths from the repository's root.
+fn paths_in(text: &str) -> impl Iterator<Item = &str> {
+    let words = text.split(|c: char| c.is_whitespace() || "`()[]'\"<>,;|".contains(c));
+    let folders = ["tests/", "scenarios/", "robots/", "crates/", "benches/", ".ci/"];
+    let words = words.map(|word| word.trim_end_matches(['.', ':', '/']));
+    words.filter(move |word| folders.iter().any(|folder| word.starts_with(folder)))
+}
+
+/// Targets of a text's links and pictures that are files.
+fn links_in(text: &str) -> impl Iterator<Item = &str> {
+    let targets = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    // Of the guide, links to items (`crate::…`, `mod@…`) and to sections are the business of rustdoc.
+    targets.filter(|target| !target.contains("::") && !target.starts_with(['#', '@']) && target.contains(['.', '/']))
+}
+
+#[test]
+fn what_the_documents_name_exists() {
+    let (mut paths, mut links) = (0, 0);
+    for document in documents() {
+        let text = fs::read_to_string(&document).unwrap();
+        for path in paths_in(&text).filter(|path| !WRITTEN_BY_THE_READER.contains(path)) {
+            assert!(root().join(path).exists(), "{} names {path}, which does not exist", document.display());
+            paths += 1;
+        }
+        for link in links_in(&text).filter(|link| !link.contains("://")) {
+            let target = document.with_file_name(link);
+            assert!(target.exists(), "{} links to {link}, which does not exist", document.display());
+            links += 1;
+        }
+    }
+    assert!(paths > 50 && links > 10, "the walk found only {paths} paths and {links} links");
 }

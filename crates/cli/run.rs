@@ -2,7 +2,7 @@
 
 use crate::progress::Progress;
 use crate::summary::{self, Clock};
-use crate::{Status, live};
+use crate::{Status, check, live};
 use anyhow::Context;
 use softdock::record::{self, Log, OutputFolder, Recorder, SampleSink, Scene};
 use softdock::scenario::outcome::{Judge, check_expectations};
@@ -49,6 +49,9 @@ pub(crate) struct Arguments {
 /// Runs, writes, judges.
 pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let mut mission = load(arguments)?;
+    if !arguments.quiet {
+        check::hints(&mission);
+    }
     let target = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out").join(&mission.scenario.name));
     let folder = OutputFolder::create(&target)?;
     let scene = scene(&mission);

@@ -27,6 +27,7 @@ pub(crate) fn document(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict
     add("expectations", verdicts.iter().map(|v| json!({"met": v.met, "text": v.text})).collect());
     let events = outcome.events.iter();
     add("events", events.map(|e| json!({"t_s": e.t, "kind": e.kind.key(), "text": e.text})).collect());
+    add("warnings", json!(outcome.warnings));
     add(
         "work",
         json!({
@@ -48,6 +49,9 @@ pub(crate) fn markdown(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict
     let mut text = format!("# {}\n\n**{}**: {}\n\n", mission.scenario.name, outcome.outcome, outcome.reason);
     for verdict in verdicts {
         text += &format!("- {}{}\n", if verdict.met { "" } else { "**not as expected:** " }, verdict.text);
+    }
+    for warning in &outcome.warnings {
+        text += &format!("- **warning:** {warning}\n");
     }
     text += "\n| figure | value |\n| --- | --- |\n";
     for metric in &outcome.metrics {
@@ -79,6 +83,9 @@ pub(crate) fn print(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict], 
         simulated,
         simulated / clock.wall_s
     );
+    for warning in &outcome.warnings {
+        println!("  warning: {warning}");
+    }
     if work.unconverged_steps > 0 {
         println!("  {} steps ended before the contact laws were met to tolerance", work.unconverged_steps);
     }

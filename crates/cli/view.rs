@@ -1,6 +1,6 @@
 //! `softdock view FILE`: a URDF, or a scenario at t = 0, as a recording for the viewer.
 
-use crate::Status;
+use crate::{Status, check};
 use softdock::multibody::{SearchPaths, load_urdf};
 use softdock::record::{Log, Meta, OutputFolder, Recorder, Sample, Scene, SceneVehicle};
 use softdock::scenario::recording;
@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
 
 /// Writes the recording, and opens it where asked.
 pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
-    let is_robot = arguments.file.extension().is_some_and(|e| e == "urdf" || e == "xml");
+    let is_robot = check::is_robot(&arguments.file);
     let (log, scene) = if is_robot { robot(arguments)? } else { start_of_scenario(arguments)? };
     let name = arguments.file.file_stem().map_or_else(|| "view".to_owned(), |s| s.to_string_lossy().into_owned());
     let target = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(format!("view-{name}")));
@@ -71,7 +71,9 @@ fn start_of_scenario(arguments: &Arguments) -> anyhow::Result<(Log, Scene)> {
 }
 
 fn robot(arguments: &Arguments) -> anyhow::Result<(Log, Scene)> {
-    let robot = load_urdf(&arguments.file, &SearchPaths::new(arguments.package_paths.clone()))?;
+    let loaded = load_urdf(&arguments.file, &SearchPaths::new(arguments.package_paths.clone()))?;
+    check::hint(&arguments.file, &loaded.warnings);
+    let robot = loaded.robot;
     let tree = multibody::Tree::from_description(&robot);
     let mut kin = multibody::Kinematics::new(&tree);
     let mut q = tree.q_zero.clone();

@@ -92,11 +92,11 @@ class State:
 
 
 class Robot:
-    """A URDF file with a free or fixed base, in Pinocchio."""
+    """A URDF file with a free or fixed base, in Pinocchio; with its mimic joints freed, every joint leads."""
 
-    def __init__(self, name, path, base, ballast=None):
-        self.name, self.base, self.ballast = name, base, ballast
-        self.mimics = mimics_of(path)
+    def __init__(self, name, path, base, ballast=None, are_mimics_freed=False):
+        self.name, self.base, self.ballast, self.armature = name, base, ballast, 0.0
+        self.mimics = {} if are_mimics_freed else mimics_of(path)
         self.model = pin.buildModelFromUrdf(str(path), pin.JointModelFreeFlyer())
         self.fixed = pin.buildModelFromUrdf(str(path))
         self.mimic_model = build_mimic(path) if self.mimics else None
@@ -115,6 +115,12 @@ class Robot:
         self.nv = at
         self.held = 6 if base == "fixed" else 0
         self.gather = self.calc_gather()
+
+    def add_armature(self, armature):
+        """Gives every joint freedom an inertia of its own."""
+        self.armature = armature
+        self.model.armature[6:] = armature
+        self.fixed.armature[:] = armature
 
     def kind(self, name):
         """What moves: turning, sliding, planar or floating."""

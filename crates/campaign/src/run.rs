@@ -49,6 +49,7 @@ pub fn make(plan: &Plan, run: u64, keep: Keep) -> Finished {
 fn attempt(plan: &Plan, run: u64, keep: Keep, started: Instant) -> Finished {
     let built = plan.scenario_of(run).and_then(|(s, drawn)| {
         let mission = plan.build(&s)?;
+        scenario::check_start(&mission)?;
         let recorder = (keep != Keep::Nothing).then(|| recorder_of(plan, &mission, keep)).transpose()?;
         Ok((mission, drawn, recorder))
     });

@@ -1,7 +1,7 @@
 //! Broad phase, then one closed form or manifold per pair of parts.
 //!
 //! Broad phase: boxes about the parts in W axes, grown by each body's reach, swept along x (Cohen et al. 1995); it is
-//! stateless, so the points do not depend on what was asked before.
+//! stateless, so the points do not depend on what was asked before. Colliders of no pair are passed over.
 
 use crate::analytic::{Raw, ball_ball, plane_ball, plane_cuboid, swapped};
 use crate::bed_points::{BedBuffer, is_bed};
@@ -20,6 +20,9 @@ const SKIN: f64 = 1e-4;
 /// Scratch of the detection; holds nothing that a result depends on.
 pub struct Detector {
     boxes: Vec<Bounds>,
+    /// Places of all parts in W, collider by collider, and where each collider's begin.
+    frames: Vec<Frame>,
+    first_frame: Vec<usize>,
     order: Vec<u32>,
     candidates: Vec<u32>,
     raw: Vec<Raw>,
@@ -48,9 +51,15 @@ impl Detector {
     /// Room for a scene.
     pub fn new(scene: &Scene) -> Self {
         let n = scene.colliders().len();
+        let mut first_frame = vec![0; n + 1];
+        for (i, parts) in scene.parts.iter().enumerate() {
+            first_frame[i + 1] = first_frame[i] + parts.len();
+        }
         Self {
             boxes: vec![Bounds::default(); n],
-            order: (0..n as u32).collect(),
+            frames: vec![Frame::identity(); first_frame[n]],
+            first_frame,
+            order: scene.asked.clone(),
             candidates: Vec::with_capacity(scene.pairs().len()),
             raw: Vec::with_capacity(64),
             reduction: Reduction::default(),
@@ -81,7 +90,7 @@ impl Detector {
             let (body_a, body_b) = (scene.colliders()[a].body, scene.colliders()[b].body);
             let margin = reach[body_a] + reach[body_b] + SKIN;
             self.narrow += 1;
-            self.find(&scene.parts[a], &poses[body_a], &scene.parts[b], &poses[body_b], margin);
+            self.find((a, &scene.parts[a]), (b, &scene.parts[b]), margin);
             self.raw.sort_unstable_by_key(|p| p.feature);
             self.reduction.reduce(&mut self.raw);
             let reduction = &self.reduction;
@@ -109,15 +118,17 @@ impl Detector {
     }
 
     fn update_boxes(&mut self, scene: &Scene, poses: &[Frame], reach: &[f64]) {
-        for (i, collider) in scene.colliders().iter().enumerate() {
+        for &i in &scene.asked {
+            let (i, collider) = (i as usize, &scene.colliders()[i as usize]);
             let grow = Vec3::repeat(reach[collider.body] + SKIN);
             let mut bounds = Bounds { low: Vec3::repeat(f64::INFINITY), high: Vec3::repeat(f64::NEG_INFINITY) };
-            for part in scene.parts[i].iter() {
+            for (part, place) in scene.parts[i].iter().zip(&mut self.frames[self.first_frame[i]..]) {
                 let frame = &poses[collider.body] * &part.frame_bp;
                 let centre = frame.point(&part.centre);
                 let half = if part.half.x.is_finite() { frame.rot.abs() * part.half } else { part.half };
                 bounds.low = bounds.low.inf(&(centre - half - grow));
                 bounds.high = bounds.high.sup(&(centre + half + grow));
+                *place = frame;
             }
             self.boxes[i] = bounds;
         }
@@ -151,15 +162,16 @@ impl Detector {
         self.candidates.sort_unstable();
     }
 
-    fn find(&mut self, parts_a: &[Part], pose_a: &Frame, parts_b: &[Part], pose_b: &Frame, margin: f64) {
+    fn find(&mut self, (a, parts_a): (usize, &[Part]), (b, parts_b): (usize, &[Part]), margin: f64) {
         self.raw.clear();
+        let (first_a, first_b) = (self.first_frame[a], self.first_frame[b]);
         for (i, a) in parts_a.iter().enumerate() {
-            let frame_a = pose_a * &a.frame_bp;
+            let frame_a = self.frames[first_a + i];
             for (j, b) in parts_b.iter().enumerate() {
                 if is_bed(a) || is_bed(b) {
                     continue;
                 }
-                let frame_b = pose_b * &b.frame_bp;
+                let frame_b = self.frames[first_b + j];
                 let start = self.raw.len();
                 self.find_parts((a, &frame_a), (b, &frame_b), margin);
                 self.raw[start..].iter_mut().for_each(|p| p.feature = mix(p.feature, i as u32, j as u32));

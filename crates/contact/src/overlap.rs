@@ -403,10 +403,14 @@ fn cross(e: &Flat, f: &Flat, tol: f64) -> Option<Meeting> {
     }
     let (wx, wy) = (f.x - e.x, f.y - e.y);
     // Along e and along f, times the sine: the range is checked before anything is divided.
-    let (s, t) = ((wx * f.dy - wy * f.dx) * sine.signum(), (wx * e.dy - wy * e.dx) * sine.signum());
-    let size = sine.abs();
+    let (side, size) = (1f64.copysign(sine), sine.abs());
     let within = |u: f64, len: f64| u >= -tol * size && u <= (len + tol) * size;
-    if !within(s, e.len) || !within(t, f.len) {
+    let s = (wx * f.dy - wy * f.dx) * side;
+    if !within(s, e.len) {
+        return None;
+    }
+    let t = (wx * e.dy - wy * e.dx) * side;
+    if !within(t, f.len) {
         return None;
     }
     let (s, t) = (s / size, t / size);

@@ -74,6 +74,8 @@ pub struct Scene {
     pub(crate) parts: Vec<Arc<[Part]>>,
     /// Pair of two colliders, by `low * n + high`; `NONE` where they are not looked at.
     pub(crate) pair_of: Vec<u32>,
+    /// Colliders of the pairs that are looked at, in order: the others need no place.
+    pub(crate) asked: Vec<u32>,
 }
 
 /// No pair.
@@ -125,7 +127,18 @@ impl Scene {
             }
             *known = index as u32;
         }
-        Ok(Self { colliders, pairs, parts, pair_of })
+        let mut scene = Self { colliders, pairs, parts, pair_of, asked: Vec::new() };
+        scene.list_asked();
+        Ok(scene)
+    }
+
+    fn list_asked(&mut self) {
+        let n = self.colliders.len();
+        let is_asked = |i: &u32| {
+            let i = *i as usize;
+            (0..n).any(|j| self.pair_of[i.min(j) * n + i.max(j)] != NONE)
+        };
+        self.asked = (0..n as u32).filter(is_asked).collect();
     }
 
     /// The pairs, as indices of colliders.
@@ -142,6 +155,7 @@ impl Scene {
     pub fn ignore(&mut self, pair: usize) {
         let (n, [a, b]) = (self.colliders.len(), self.pairs[pair]);
         self.pair_of[a.min(b) * n + a.max(b)] = NONE;
+        self.list_asked();
     }
 
     /// The colliders.

@@ -12,7 +12,6 @@
 
 use crate::bristle::Bristle;
 use crate::ellipse::Ellipse;
-use crate::trial::Return;
 use nalgebra::Vector3;
 
 /// Slip velocity (m/s, in the tangent plane) and normal force (N) at the start, the middle and the end of a time; quadratic
@@ -113,9 +112,6 @@ impl Ellipse {
         }
         let s = self.hold(s).s;
         let free = s + slip * dt;
-        if !self.is_round() && self.way == Return::Nearest {
-            return self.hold(&free).s;
-        }
         // It comes back more slowly than the bound that closes behind it.
         if self.hold(&free).inside {
             return held.s;
@@ -174,7 +170,6 @@ mod tests {
         dwell_time: 0.0,
         fall_time: 0.0,
         across: 1.0,
-        way: Return::Nearest,
         stiffness: 1e5,
         damping: 0.0,
         viscous: 0.0,
@@ -194,8 +189,8 @@ mod tests {
     fn it_is_the_limit_of_small_steps_on_a_circle_and_on_an_ellipse() {
         // 20 N: 40 µm; 10 mm/s for 4 ms is one of them. Slip and normal force change by half.
         let slip = [Vector3::new(0.01, 0.0, 0.0), Vector3::new(0.008, 0.004, 0.0), Vector3::new(0.005, 0.009, 0.0)];
-        for (across, way) in [(1.0, Return::Nearest), (0.8, Return::Radial)] {
-            let law = Bristle { across, way, ..LAW };
+        for across in [1.0, 0.8] {
+            let law = Bristle { across, ..LAW };
             for normal_force in [[20.0, 25.0, 30.0], [20.0, 12.0, 8.0]] {
                 for s in [Vector3::zeros(), Vector3::new(-3e-5, 1e-5, 0.0), Vector3::new(0.0, -3e-5, 0.0)] {
                     let path = SlipPath { slip, normal_force, elapsed: 4e-3 };
@@ -211,7 +206,7 @@ mod tests {
     /// would see all of the slip.
     #[test]
     fn on_an_ellipse_it_stays_on_the_bound_as_this_widens() {
-        let law = Bristle { across: 0.8, way: Return::Radial, damping: 40.0, ..LAW };
+        let law = Bristle { across: 0.8, damping: 40.0, ..LAW };
         let across = Vector3::y() * (0.8 * law.calc_reach(20.0, 0.0));
         let slip = [0.02, 0.1, 0.18].map(|angle: f64| 0.02 * Vector3::new(angle.sin(), angle.cos(), 0.0));
         let path = SlipPath { slip, normal_force: [20.0; 3], elapsed: 4e-3 };

@@ -68,7 +68,7 @@ impl Friction {
     /// Rest of a contact that has just begun.
     #[inline]
     pub fn initial_rest(&self) -> f64 {
-        if let Self::Bristle(law) = self { law.levels().initial_rest() } else { 1.0 }
+        if let Self::Bristle(law) = self { law.initial_rest() } else { 1.0 }
     }
 
     /// Stiffness and damping of the bristle, N/m and N·s/m; zero for a law without one.

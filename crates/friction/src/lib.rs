@@ -10,8 +10,8 @@
 //!   f  = −(k s' + c (s' − s)/τ), shortened to μ fₙ, − b u                           on B, N
 //!
 //! with τ the time between s and s'. The level μ may fall with the slip speed (Stribeck) or at breakaway, return with the time
-//! at rest ([`Levels`]), and differ across a grain (an ellipse in place of the circle |s| ≤ s_max; s' is then its
-//! nearest point, or s⁺ shortened along itself: [`Return`]).
+//! at rest ([`Levels`]), and differ across a grain (an ellipse in place of the circle |s| ≤ s_max, to which s⁺ is
+//! shortened along itself, so that steady sliding is opposed by the level of its direction).
 //! A falling normal force shrinks the bound, and the bristle with it; what it stored beyond is lost, never given back.
 //! As bodies and plane turn, [`carry`] and [`mean_of`] bring s into the new plane at its length. [`Pivot`] is the lumped
 //! resistance of a single point to spinning and rolling. [`RegularisedCoulomb`] and [`LuGre`] (with Dahl and elasto-plastic)
@@ -55,4 +55,4 @@ pub use levels::Levels;
 pub use lugre::LuGre;
 pub use pivot::{Pivot, PivotMoment, Turn};
 pub use transport::{carry, mean_of};
-pub use trial::{Brush, BrushRate, FrictionError, Return, Slope, Trial};
+pub use trial::{Brush, BrushRate, FrictionError, Slope, Trial};

@@ -1,7 +1,6 @@
 //! What every law is asked and what it answers.
 
 use nalgebra::{Matrix3, Vector3};
-use serde::{Deserialize, Serialize};
 
 /// A parameter out of its range.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,16 +36,6 @@ fn refuse(all: &[(&'static str, f64)], must_be: &'static str, fits: impl Fn(f64)
         Some(&(parameter, value)) => Err(FrictionError { parameter, value, must_be }),
         None => Ok(()),
     }
-}
-
-/// How a deflection that the normal force does not hold comes back where the levels differ across a grain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Return {
-    /// To the nearest point of the ellipse: slip normal to it, the most dissipation.
-    #[default]
-    Nearest,
-    /// Shortened along itself: in steady sliding the force opposes the velocity.
-    Radial,
 }
 
 /// What one evaluation needs. All vectors lie in the tangent plane, in any axes.
@@ -92,12 +81,27 @@ impl Slope {
         Self { across: value, along: value, direction: Vector3::zeros() }
     }
 
+    /// Whether it is the same in every direction.
+    #[inline]
+    pub fn is_even(&self) -> bool {
+        is_zero(&self.direction)
+    }
+
     /// As a matrix in the plane normal to `n`.
     #[inline]
     pub fn calc_matrix(&self, n: &Vector3<f64>) -> Matrix3<f64> {
-        let d = &self.direction;
-        self.across * (Matrix3::identity() - n * n.transpose()) + (self.along - self.across) * (d * d.transpose())
+        let (d, even) = (&self.direction, self.across * (Matrix3::identity() - n * n.transpose()));
+        if self.is_even() {
+            return even;
+        }
+        even + (self.along - self.across) * (d * d.transpose())
     }
+}
+
+/// Whether a vector is zero: a comparison of matrices takes ten times as long.
+#[inline]
+pub(crate) fn is_zero(v: &Vector3<f64>) -> bool {
+    v.x == 0.0 && v.y == 0.0 && v.z == 0.0
 }
 
 /// What the brush answers.

@@ -1,7 +1,7 @@
 //! What a friction law owes to physics, whatever happens to it: it gives no energy, it knows no preferred direction, its
 //! memory is bounded, and it acts on both bodies alike.
 
-use friction::{Bristle, Brush, Return, Trial, carry};
+use friction::{Bristle, Brush, Trial, carry};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 
@@ -51,21 +51,18 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
 fn laws() -> impl Strategy<Value = Bristle> {
     let levels = (0.0..1.0f64, 0.0..1.0f64, prop_oneof![1e-4..0.1f64, Just(0.0)], prop_oneof![Just(0.0), 1e-4..1.0f64]);
     let brush = (prop_oneof![Just(1.0), 0.1..3.0f64], 1e2..1e7f64, 0.0..1e3f64, 0.0..10.0f64);
-    let options = (prop_oneof![Just(0.0), 1e-4..0.1f64], prop_oneof![Just(Return::Nearest), Just(Return::Radial)]);
-    (levels, brush, options).prop_map(
-        |((mu_kinetic, drop, stribeck_speed, dwell_time), (across, stiffness, damping, viscous), (fall_time, way))| {
-            Bristle {
-                mu_static: mu_kinetic + drop,
-                mu_kinetic,
-                stribeck_speed,
-                dwell_time,
-                fall_time,
-                across,
-                way,
-                stiffness,
-                damping,
-                viscous,
-            }
+    let fall = prop_oneof![Just(0.0), 1e-4..0.1f64];
+    (levels, brush, fall).prop_map(
+        |((mu_kinetic, drop, stribeck_speed, dwell_time), (across, stiffness, damping, viscous), fall_time)| Bristle {
+            mu_static: mu_kinetic + drop,
+            mu_kinetic,
+            stribeck_speed,
+            dwell_time,
+            fall_time,
+            across,
+            stiffness,
+            damping,
+            viscous,
         },
     )
 }

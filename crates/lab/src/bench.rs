@@ -47,7 +47,6 @@ impl Bench {
             environment: Environment::DeepSpace,
             integrator: Integrator::ImplicitEuler,
             step,
-            one_sided_force: Vec3::zeros(),
         };
         Self { experiment, spec, scene: Scene::default() }
     }

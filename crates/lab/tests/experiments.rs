@@ -61,3 +61,31 @@ fn every_experiment_is_tested_and_has_its_own_name() {
     all.dedup();
     assert_eq!(all.len(), lab::catalogue().len());
 }
+
+/// The numerical loss at the end of an experiment's recorded run, J, and the most that it handled, J; `None` where nothing is
+/// recorded.
+fn numerical_loss_of(name: &str, step: f64) -> Option<(f64, f64)> {
+    let experiment = lab::find(name).unwrap();
+    let options = Options { quick: true, step: Some(step), ..Options::default() };
+    let (log, _) = (experiment.run)(&options).unwrap().run?;
+    let channel = |quantity: &str| log.signals.values(&format!("energy.{quantity}")).unwrap();
+    let works = ["kinetic", "actuator_work", "contact_work", "contact_loss", "joint_loss"];
+    let size = works.iter().flat_map(|q| channel(q)).fold(0.0_f64, |size, x| size.max(x.abs()));
+    channel("numerical_loss").last().map(|loss| (*loss, size))
+}
+
+#[test]
+fn numerical_loss_of_every_recorded_experiment_falls_with_its_step() {
+    let mut recorded = 0;
+    for name in TESTED {
+        let [Some((coarse, _)), Some((fine, size))] = [1e-3, 2.5e-4].map(|step| numerical_loss_of(name, step)) else {
+            continue;
+        };
+        recorded += 1;
+        let [before, after] = [coarse, fine].map(|loss| loss.abs() / size);
+        println!("{name}: {before:.1e} {after:.1e} of {size:.1e} J");
+        // First order gives 4. Below a millionth round-off and corners decide.
+        assert!(after < 1e-6 || after < before / 2.0, "{name}: {coarse:e} J, {fine:e} J of {size:e} J");
+    }
+    assert!(recorded >= 12, "{recorded} experiments have a recording");
+}

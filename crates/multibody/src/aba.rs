@@ -50,7 +50,7 @@ pub struct Drive<'a> {
 impl Dynamics {
     /// Joint accelerations into `v_dot`; returns the base's spatial acceleration about the anchor (zero if held).
     ///
-    /// `None` if the tree has mimic joints, or if an articulated inertia is singular.
+    /// `None` if the tree has mimic joints, or if an articulated inertia is singular (within rounding, garbage).
     pub fn calc_forward(
         &mut self,
         tree: &Tree,
@@ -95,7 +95,11 @@ impl Dynamics {
         for k in 0..joint.width {
             d[(k, k)] += joint.armature;
         }
-        let d_inverse = if joint.width == 1 { Mat6::from_diagonal_element(1.0 / d[(0, 0)]) } else { d.try_inverse()? };
+        let d_inverse = match joint.width {
+            1 if d[(0, 0)] <= 0.0 => return None,
+            1 => Mat6::from_diagonal_element(1.0 / d[(0, 0)]),
+            _ => d.try_inverse()?,
+        };
         scratch.d_inverse[j] = d_inverse;
         scratch.coriolis[body] = kin.vel[parent].cross_motion(&rate);
         let mut reduced = self.composite[body];

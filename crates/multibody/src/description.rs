@@ -21,13 +21,16 @@ pub struct RobotDescription {
 }
 
 impl RobotDescription {
-    /// Whether the root, or anything fixed to it, has mass: a free base needs it, a fixed one does not.
+    /// Whether the root, or anything fixed to it, has mass; a fixed base needs none.
     pub fn root_has_mass(&self) -> bool {
         let mut is_root_body = vec![true; self.links.len()];
         for (i, joint) in self.joints.iter().enumerate() {
             is_root_body[i + 1] = joint.kind == JointKind::Fixed && is_root_body[joint.parent];
         }
-        self.links.iter().zip(is_root_body).any(|(link, is_root)| is_root && link.inertial.is_some())
+        self.links
+            .iter()
+            .zip(is_root_body)
+            .any(|(link, is_root)| is_root && link.inertial.is_some_and(|i| i.mass > 0.0))
     }
 }
 
@@ -47,11 +50,12 @@ pub struct LinkDescription {
 /// Mass properties of a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertial {
-    /// kg, positive.
+    /// kg, not negative; zero only with a tensor that is not.
     pub mass: f64,
     /// Centre of mass in the link frame, m.
     pub com: Vec3,
-    /// Tensor about the centre of mass, in the *link's* axes (already turned from the inertial frame's), kg·m².
+    /// Tensor about the centre of mass, in the *link's* axes (already turned from the inertial frame's), kg·m². As the file
+    /// has it: by itself it need not be a rigid body's, together with what is fixed to the link it has no negative moment.
     pub tensor_com: Mat3,
 }
 
@@ -110,6 +114,8 @@ pub enum Geometry {
     Mesh(Arc<Mesh>),
     /// A docking shape, named by softdock's own tag; only of collisions.
     Docking(DockingGeometry),
+    /// A shape that could not be had, with the reason; only of collisions. A contact that needs it cannot be simulated.
+    Missing(Arc<str>),
 }
 
 /// A docking shape, in its own frame; lengths in m, angles in rad. The contact crate says what each is.

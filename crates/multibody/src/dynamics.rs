@@ -23,12 +23,29 @@ pub struct Dynamics {
     locked: Vec<Inertia>,
     pub(crate) force: Vec<Wrench>,
     pub(crate) articulated: crate::aba::ArticulatedScratch,
+    paths: Vec<Moves>,
+    /// Body by body where its path begins, and the end.
+    path_starts: Vec<usize>,
+}
+
+/// A screw that moves a body: its place in [`Kinematics::screws`], and the coordinate that it belongs to.
+#[derive(Clone, Copy, Debug)]
+pub struct Moves {
+    /// Index into the screws.
+    pub column: u32,
+    /// Index into v.
+    pub coordinate: u32,
 }
 
 impl Dynamics {
     /// Room for one vehicle.
     pub fn new(tree: &Tree) -> Self {
         let n = tree.bodies.len();
+        let (mut paths, mut path_starts) = (Vec::new(), vec![0]);
+        for body in 0..n {
+            add_path(tree, body, &mut paths);
+            path_starts.push(paths.len());
+        }
         Self {
             acc: vec![Twist::default(); n],
             wrench: vec![Wrench::default(); n],
@@ -36,7 +53,15 @@ impl Dynamics {
             locked: vec![Inertia::default(); n],
             force: vec![Wrench::default(); 6],
             articulated: crate::aba::ArticulatedScratch::new(tree),
+            paths,
+            path_starts,
         }
+    }
+
+    /// The screws that move a body, from the tip inwards.
+    #[inline]
+    pub fn path(&self, body: usize) -> &[Moves] {
+        &self.paths[self.path_starts[body]..self.path_starts[body + 1]]
     }
 
     /// Inverse dynamics: joint efforts `tau` and the base wrench (about the anchor, W axes) that produce the given
@@ -51,7 +76,7 @@ impl Dynamics {
     ) -> Wrench {
         self.calc_body_wrenches(tree, kin, motion, external);
         let base = self.collect(tree, kin, tau);
-        for joint in tree.joints.iter().filter(|j| j.armature != 0.0 && !j.is_mimic) {
+        for joint in tree.joints.iter().filter(|j| j.armature != 0.0 && !j.is_mimic && !motion.v_dot.is_empty()) {
             let range = joint.v_index..joint.v_index + joint.width;
             for (tau, v_dot) in tau[range.clone()].iter_mut().zip(&motion.v_dot[range]) {
                 *tau += joint.armature * v_dot;
@@ -71,13 +96,17 @@ impl Dynamics {
         self.acc[0] = motion.base;
         for (j, joint) in tree.joints.iter().enumerate() {
             let parent = tree.bodies[j + 1].parent;
-            let (mut rate, mut gain) = (Twist::default(), Twist::default());
+            let mut rate = Twist::default();
             for k in 0..joint.width {
-                let screw = kin.screws[joint.column + k];
-                rate += screw * motion.v[joint.v_index + k];
-                gain += screw * motion.v_dot[joint.v_index + k];
+                rate += kin.screws[joint.column + k] * motion.v[joint.v_index + k];
             }
-            self.acc[j + 1] = self.acc[parent] + gain + kin.vel[parent].cross_motion(&rate);
+            let mut acc = self.acc[parent];
+            if !motion.v_dot.is_empty() {
+                for k in 0..joint.width {
+                    acc += kin.screws[joint.column + k] * motion.v_dot[joint.v_index + k];
+                }
+            }
+            self.acc[j + 1] = acc + kin.vel[parent].cross_motion(&rate);
         }
         for (body, wrench) in self.wrench.iter_mut().enumerate() {
             let momentum = kin.inertia[body].momentum(&kin.vel[body]);
@@ -99,13 +128,13 @@ impl Dynamics {
         self.wrench[0]
     }
 
-    /// Mass matrix over (V_B, v), plus `extra` (per body, about the anchor; empty for none): row-major, the full square
+    /// Mass matrix over (V_B, v), plus `extra` (per body that has any, about the anchor; empty for none): row-major, the full square
     /// of side `stride` ≥ 6 + nv written from `m[0]`.
     pub fn calc_mass_matrix(
         &mut self,
         tree: &Tree,
         kin: &Kinematics,
-        extra: &[SpatialMatrix],
+        extra: &[Option<SpatialMatrix>],
         m: &mut [f64],
         stride: usize,
     ) {
@@ -113,17 +142,35 @@ impl Dynamics {
         for row in m.chunks_mut(stride).take(n) {
             row[..n].fill(0.0);
         }
+        self.add_mass_matrix(tree, kin, extra, m, stride);
+        for k in 1..n {
+            for l in 0..k {
+                m[k * stride + l] = m[l * stride + k];
+            }
+        }
+    }
+
+    /// The same, added to the upper triangle alone, diagonal included; the rest of the square is left as it is.
+    pub fn add_mass_matrix(
+        &mut self,
+        tree: &Tree,
+        kin: &Kinematics,
+        extra: &[Option<SpatialMatrix>],
+        m: &mut [f64],
+        stride: usize,
+    ) {
         if extra.is_empty() {
             self.add_rigid(tree, kin, m, (stride, 6));
-            write_base_block(&SpatialMatrix::from(&self.locked[0]), m, stride);
+            add_base_block(&SpatialMatrix::from(&self.locked[0]), m, stride);
         } else {
             self.add_stiffened(tree, kin, extra, m, stride);
+            add_base_block(&self.composite[0], m, stride);
         }
         add_armatures(tree, m, (stride, 6));
     }
 
-    /// Mass matrix over the joint coordinates alone, of a vehicle whose base is held: row-major, added to the square of side `stride` ≥ nv that
-    /// begins at `m[0]`.
+    /// Mass matrix over the joint coordinates alone, of a vehicle whose base is held: row-major, added to the upper triangle of the square
+    /// of side `stride` ≥ nv that begins at `m[0]`.
     pub fn add_joint_mass_matrix(&mut self, tree: &Tree, kin: &Kinematics, m: &mut [f64], stride: usize) {
         self.add_rigid(tree, kin, m, (stride, 0));
         add_armatures(tree, m, (stride, 0));
@@ -143,10 +190,19 @@ impl Dynamics {
     }
 
     /// What stiffness adds to them is any symmetric matrix.
-    fn add_stiffened(&mut self, tree: &Tree, kin: &Kinematics, extra: &[SpatialMatrix], m: &mut [f64], stride: usize) {
+    fn add_stiffened(
+        &mut self,
+        tree: &Tree,
+        kin: &Kinematics,
+        extra: &[Option<SpatialMatrix>],
+        m: &mut [f64],
+        stride: usize,
+    ) {
         for ((composite, inertia), extra) in self.composite.iter_mut().zip(&kin.inertia).zip(extra) {
             *composite = SpatialMatrix::from(inertia);
-            *composite += *extra;
+            if let Some(extra) = extra {
+                *composite += *extra;
+            }
         }
         for (j, joint) in tree.joints.iter().enumerate().rev() {
             let composite = self.composite[j + 1];
@@ -156,42 +212,42 @@ impl Dynamics {
             self.add_joint_rows(tree, kin, j, m, (stride, 6));
             self.composite[tree.bodies[j + 1].parent] += composite;
         }
-        write_base_block(&self.composite[0], m, stride);
     }
 
-    /// Rows and columns of a joint, whose unit gains take the wrenches `force` of all that hangs on it.
-    fn add_joint_rows(
-        &mut self,
-        tree: &Tree,
-        kin: &Kinematics,
-        j: usize,
-        m: &mut [f64],
-        (stride, first): (usize, usize),
-    ) {
+    /// What a joint shares with itself and with all that moves it, when its unit gains take the wrenches `force` of all that hangs on it: its
+    /// entries of the upper triangle.
+    fn add_joint_rows(&self, tree: &Tree, kin: &Kinematics, j: usize, m: &mut [f64], (stride, first): (usize, usize)) {
         let joint = &tree.joints[j];
         for k in 0..joint.width {
             let (row, force) = (first + joint.v_index + k, self.force[k]);
-            for l in 0..joint.width {
-                m[row * stride + first + joint.v_index + l] += kin.screws[joint.column + l].dot(&force);
+            for l in k..joint.width {
+                m[row * stride + row - k + l] += kin.screws[joint.column + l].dot(&force);
             }
-            let mut at = tree.bodies[j + 1].parent;
-            while at != 0 {
-                let above = &tree.joints[at - 1];
-                for l in 0..above.width {
-                    let (column, value) = (first + above.v_index + l, kin.screws[above.column + l].dot(&force));
-                    // A mimic joint below its leader meets its own coordinate: both halves land on the diagonal.
-                    m[row * stride + column] += value;
-                    m[column * stride + row] += value;
-                }
-                at = tree.bodies[at].parent;
+            for above in self.path(tree.bodies[j + 1].parent) {
+                let value = kin.screws[above.column as usize].dot(&force);
+                let column = first + above.coordinate as usize;
+                let entry = &mut m[row.min(column) * stride + row.max(column)];
+                *entry += value;
+                // A mimic joint below its leader meets its own coordinate: both halves land on the diagonal.
+                *entry += if row == column { value } else { 0.0 };
             }
-            for l in 0..first / 2 {
-                for (column, value) in [(l, force.moment[l]), (3 + l, force.force[l])] {
-                    m[row * stride + column] += value;
-                    m[column * stride + row] += value;
+            if first == 6 {
+                let base =
+                    [force.moment.x, force.moment.y, force.moment.z, force.force.x, force.force.y, force.force.z];
+                for (above, value) in m.chunks_exact_mut(stride).zip(base) {
+                    above[row] += value;
                 }
             }
         }
+    }
+}
+
+fn add_path(tree: &Tree, mut body: usize, path: &mut Vec<Moves>) {
+    while body != 0 {
+        let joint = &tree.joints[body - 1];
+        let moves = |k: usize| Moves { column: (joint.column + k) as u32, coordinate: (joint.v_index + k) as u32 };
+        path.extend((0..joint.width).map(moves));
+        body = tree.bodies[body].parent;
     }
 }
 
@@ -203,13 +259,14 @@ fn add_armatures(tree: &Tree, m: &mut [f64], (stride, first): (usize, usize)) {
     }
 }
 
-fn write_base_block(total: &SpatialMatrix, m: &mut [f64], stride: usize) {
+fn add_base_block(total: &SpatialMatrix, m: &mut [f64], stride: usize) {
     for i in 0..3 {
+        for j in i..3 {
+            m[i * stride + j] += total.ma[(i, j)];
+            m[(3 + i) * stride + 3 + j] += total.fl[(i, j)];
+        }
         for j in 0..3 {
-            m[i * stride + j] = total.ma[(i, j)];
-            m[i * stride + 3 + j] = total.ml[(i, j)];
-            m[(3 + i) * stride + j] = total.fa[(i, j)];
-            m[(3 + i) * stride + 3 + j] = total.fl[(i, j)];
+            m[i * stride + 3 + j] += total.ml[(i, j)];
         }
     }
 }
@@ -221,7 +278,7 @@ pub struct Accelerations<'a> {
     pub base: Twist,
     /// Joint rates.
     pub v: &'a [f64],
-    /// Joint accelerations.
+    /// Joint accelerations; empty where all are zero.
     pub v_dot: &'a [f64],
 }
 

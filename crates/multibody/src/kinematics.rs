@@ -47,8 +47,8 @@ impl Kinematics {
         self.inertia[0] = tree.bodies[0].inertia.transformed(&self.rot[0], &Vec3::zeros());
         for (j, joint) in tree.joints.iter().enumerate() {
             let (body, parent) = (j + 1, tree.bodies[j + 1].parent);
-            let frame_wj = &Frame { rot: self.rot[parent], pos: self.pos[parent] } * &joint.frame_pj;
-            let frame_wc = &frame_wj * &joint.calc_frame_jc(q);
+            let frame_wj = joint.place(&Frame { rot: self.rot[parent], pos: self.pos[parent] });
+            let frame_wc = joint.place_child(&frame_wj, q);
             (self.rot[body], self.pos[body]) = (frame_wc.rot, frame_wc.pos);
             joint.write_screws(&frame_wc.rot, &frame_wc.pos, &mut self.screws[joint.column..]);
             self.inertia[body] = tree.bodies[body].inertia.transformed(&frame_wc.rot, &frame_wc.pos);

@@ -12,11 +12,12 @@
 //! | planar | x, y, θ in the plane normal to the axis | vx, vy in the child's axes, θ̇ |
 //!
 //! A mimic joint has no coordinate of its own: it reads its leader's, and its screw is scaled by the multiplier, so
-//! that velocities, forces and inertias fold into the leader's coordinate by themselves.
+//! that velocities, forces and inertias fold into the leader's coordinate by themselves; its limits, damping and friction
+//! are laid on the leader's ([`crate::followers`]).
 
 use crate::{JointDescription, JointKind, RobotDescription};
 use nalgebra::{Quaternion, UnitQuaternion};
-use spatial::{Frame, Inertia, Twist, Vec3, exp_rotation, log_rotation, nalgebra, rotation_about};
+use spatial::{Frame, Inertia, Mat3, Twist, Vec3, exp_rotation, log_rotation, nalgebra, rotation_about};
 
 /// A robot, ready to move; never changes after it is built.
 #[derive(Clone, Debug)]
@@ -79,6 +80,8 @@ pub struct Joint {
     pub kind: JointKind,
     /// Joint frame in the parent body's frame.
     pub frame_pj: Frame,
+    /// Whether it has the parent's axes.
+    pub(crate) is_straight: bool,
     /// Unit vector in the joint frame.
     pub axis: Vec3,
     /// First screw in [`crate::Kinematics::screws`].
@@ -95,15 +98,15 @@ pub struct Joint {
     pub offset: f64,
     /// Whether it follows another joint.
     pub is_mimic: bool,
-    /// Stops, rad or m.
+    /// Stops, rad or m; a leader's are narrowed to where its followers stay within theirs.
     pub position_limits: Option<[f64; 2]>,
     /// Largest effort, N·m or N.
     pub effort_limit: f64,
-    /// Largest speed, rad/s or m/s.
+    /// Largest speed, rad/s or m/s; a leader's is the least that it or a follower allows.
     pub velocity_limit: f64,
-    /// Viscous friction, N·m·s/rad or N·s/m.
+    /// Viscous friction, N·m·s/rad or N·s/m; a leader's with that of its followers.
     pub damping: f64,
-    /// Dry friction level, N·m or N.
+    /// Dry friction level, N·m or N; a leader's with that of its followers.
     pub friction: f64,
     /// Inertia that belongs to the coordinate and to no body, kg·m² or kg: a geared drive's rotor, reflected to the
     /// joint, its gyroscopic terms neglected. It adds to the diagonal of the mass matrix and is no part of the momentum.
@@ -152,6 +155,7 @@ impl Tree {
             tree.links.push(Link { name: link.name.clone(), body, frame_bl, inertia });
         }
         tree.number_coordinates(robot, &joint_of_description);
+        tree.load_leaders();
         tree
     }
 
@@ -163,6 +167,7 @@ impl Tree {
             name: joint.name.clone(),
             kind: joint.kind,
             frame_pj,
+            is_straight: frame_pj.rot == Mat3::identity(),
             axis: joint.axis,
             column,
             width: widths(joint.kind).1,
@@ -227,6 +232,7 @@ impl Tree {
             name,
             kind,
             frame_pj,
+            is_straight: frame_pj.rot == Mat3::identity(),
             axis,
             column: self.n_columns(),
             width: 1,
@@ -384,24 +390,36 @@ pub(crate) fn rotation_of_floating(q: &[f64]) -> UnitQuaternion<f64> {
 }
 
 impl Joint {
-    /// Child frame in the joint frame, at the coordinates `q` of the whole tree.
+    /// The joint frame, where the parent's is at `frame_wp`.
     #[inline]
-    pub(crate) fn calc_frame_jc(&self, q: &[f64]) -> Frame {
+    pub(crate) fn place(&self, frame_wp: &Frame) -> Frame {
+        if self.is_straight {
+            return Frame { rot: frame_wp.rot, pos: frame_wp.point(&self.frame_pj.pos) };
+        }
+        frame_wp * &self.frame_pj
+    }
+
+    /// The child's frame, where the joint frame is at `frame_wj`, at the coordinates `q` of the whole tree.
+    #[inline]
+    pub(crate) fn place_child(&self, frame_wj: &Frame, q: &[f64]) -> Frame {
         let q = &q[self.q_index..];
         match self.kind {
             JointKind::Revolute => {
-                Frame { rot: rotation_about(&self.axis, self.multiplier * q[0] + self.offset), pos: Vec3::zeros() }
+                let turned = rotation_about(&self.axis, self.multiplier * q[0] + self.offset);
+                Frame { rot: frame_wj.rot * turned, pos: frame_wj.pos }
             }
             JointKind::Prismatic => {
-                Frame { rot: spatial::Mat3::identity(), pos: (self.multiplier * q[0] + self.offset) * self.axis }
+                let moved = (self.multiplier * q[0] + self.offset) * self.axis;
+                Frame { rot: frame_wj.rot, pos: frame_wj.point(&moved) }
             }
-            JointKind::Fixed => Frame::identity(),
+            JointKind::Fixed => *frame_wj,
             JointKind::Floating => {
-                Frame { rot: *rotation_of_floating(q).to_rotation_matrix().matrix(), pos: Vec3::new(q[0], q[1], q[2]) }
+                let rot = *rotation_of_floating(q).to_rotation_matrix().matrix();
+                frame_wj * &Frame { rot, pos: Vec3::new(q[0], q[1], q[2]) }
             }
             JointKind::Planar => {
                 let [ex, ey] = plane_axes(&self.axis);
-                Frame { rot: rotation_about(&self.axis, q[2]), pos: q[0] * ex + q[1] * ey }
+                frame_wj * &Frame { rot: rotation_about(&self.axis, q[2]), pos: q[0] * ex + q[1] * ey }
             }
         }
     }

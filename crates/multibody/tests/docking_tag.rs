@@ -28,7 +28,7 @@ fn docking_shapes_stand_in_for_the_geometry_of_their_collision() {
         "<softdock_shape><ring major_radius=\"0.6\" minor_radius=\"0.02\"/></softdock_shape>",
         "<softdock_shape><petal base_radius=\"0.2\" tip_radius=\"0.08\" height=\"0.12\" half_sector=\"0.6\" thickness=\"0.012\"/></softdock_shape>",
     ]);
-    let robot = parse_urdf(&text, Path::new("port.urdf"), Path::new("."), &SearchPaths::default()).unwrap();
+    let robot = parse_urdf(&text, Path::new("port.urdf"), Path::new("."), &SearchPaths::default()).unwrap().robot;
     let found: Vec<&Geometry> = robot.links[1].collisions.iter().map(|c| &c.geometry).collect();
     let docking = |i: usize| match found[i] {
         Geometry::Docking(docking) => *docking,

@@ -12,6 +12,7 @@ const UNIT_INERTIAL: &str = r#"<inertial><mass value="1"/><inertia ixx="1" iyy="
 fn load(text: &str) -> RobotDescription {
     parse_urdf(text, Path::new("good.urdf"), Path::new("."), &SearchPaths::default())
         .unwrap_or_else(|errors| panic!("must load:\n{errors}"))
+        .robot
 }
 
 /// Links `a`, `b`, `c`, … in a chain; of each joint its attributes and what is inside it.

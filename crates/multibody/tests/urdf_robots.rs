@@ -24,7 +24,7 @@ fn third_party(test: &str) -> Option<PathBuf> {
 }
 
 fn load(path: &Path, search: &SearchPaths) -> RobotDescription {
-    load_urdf(path, search).unwrap_or_else(|errors| panic!("{} must load:\n{errors}", path.display()))
+    load_urdf(path, search).unwrap_or_else(|errors| panic!("{} must load:\n{errors}", path.display())).robot
 }
 
 /// Sum of the masses, kg, and number of triangles, of a robot.

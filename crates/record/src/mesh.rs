@@ -38,6 +38,7 @@ pub fn triangulate(geometry: &Geometry, pose_ls: &Pose) -> TriangleMesh {
         Geometry::Cylinder { radius, length } => shade(&cylinder(*radius, *length), &[], pose_ls),
         Geometry::Docking(docking) => shade(&of_docking(docking), &[], pose_ls),
         Geometry::Mesh(mesh) => shade(&of_file(mesh), &mesh.vertex_rgba, pose_ls),
+        Geometry::Missing(_) => TriangleMesh::default(),
     }
 }
 

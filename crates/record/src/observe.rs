@@ -13,7 +13,7 @@
 
 use crate::{ChannelSpec, ContactSample, Log, Meta, Plot, RecordError, Sample};
 use multibody::JointKind;
-use sim::{ActuatorKind, DriveAxis, Energy, Flow, Model, MomentumAudit, Observer, World};
+use sim::{ActuatorKind, DriveAxis, Energy, EnergyAudit, EnergyBalance, Flow, Model, MomentumAudit, Observer, World};
 use spatial::{Pose, Vec3};
 
 /// Further channels. Those that have the name of a standard channel take its place: what a sensor makes of it.
@@ -65,6 +65,7 @@ pub struct Recorder<'a> {
     links: Vec<usize>,
     every: u64,
     audit: Option<MomentumAudit>,
+    energy: EnergyAudit,
     vehicle_pairs: Vec<(Option<usize>, Option<usize>)>,
     live: Option<&'a mut dyn SampleSink>,
     scratch: Scratch,
@@ -148,6 +149,7 @@ impl<'a> Recorder<'a> {
             links: plan.links.clone(),
             every: plan.every.max(1),
             audit: MomentumAudit::applies(world).then(|| MomentumAudit::new(world)),
+            energy: EnergyAudit::new(world),
             vehicle_pairs,
             live,
             scratch: Scratch { poses: Vec::with_capacity(plan.links.iter().sum()), ..Scratch::default() },
@@ -164,7 +166,7 @@ impl<'a> Recorder<'a> {
         write_joints(world, &mut values);
         write_drives(world, &mut values);
         write_contacts(world, &self.vehicle_pairs, &mut values);
-        write_accounts(world, self.audit.as_ref(), &mut values);
+        write_accounts(world, self.audit.as_ref(), &self.energy.close(world), &mut values);
         crate::mechanisms::write(world, &mut values);
         let Scratch { probed, kept, poses, contacts, .. } = &mut self.scratch;
         probed.clear();
@@ -273,7 +275,7 @@ pub fn standard_channels(model: &Model) -> Vec<ChannelSpec> {
     for (quantity, text) in [("kinetic", ""), ("potential", ""), ("elastic", "stored in contacts")] {
         add(format!("energy.{quantity}"), "J", Plot::Energy, text);
     }
-    for quantity in ["actuator_work", "contact_work", "joint_loss"] {
+    for quantity in ["actuator_work", "contact_work", "contact_loss", "joint_loss", "numerical_loss"] {
         add(format!("energy.{quantity}"), "J", Plot::Energy, "sum since the start");
     }
     specs.extend(crate::mechanisms::channels(model));
@@ -349,11 +351,12 @@ fn write_contacts(world: &World, pairs: &[(Option<usize>, Option<usize>)], value
     }
 }
 
-fn write_accounts(world: &World, audit: Option<&MomentumAudit>, values: &mut Vec<f64>) {
-    let (energy, account) = (Energy::of(world), world.state().account);
+fn write_accounts(world: &World, audit: Option<&MomentumAudit>, balance: &EnergyBalance, values: &mut Vec<f64>) {
+    let (energy, contact_work) = (Energy::of(world), world.state().account.contact_work);
     values.extend(audit.map_or([f64::NAN; 2], |a| [a.linear_drift, a.angular_drift]));
     values.extend([energy.kinetic, energy.potential, energy.elastic]);
-    values.extend([account.actuator_work, account.contact_work, account.passive_joint_work]);
+    let EnergyBalance { actuator_work, contact_loss, joint_loss, numerical_loss, .. } = *balance;
+    values.extend([actuator_work, contact_work, contact_loss, joint_loss, numerical_loss]);
 }
 
 /// Rotors and tips of mounts come after the links of the file; the scene does not show them.

@@ -1,17 +1,17 @@
-//! The books: momentum recomputed from the links, and energy by where it is.
+//! Momentum recomputed from the links.
 //!
 //! The audit never reads a conserved state: it sums over the *links*, with their masses, poses and twists, and over the parts
 //! that effects put inside them.
 //!
 //!   p = Σ m_l v_l,    L = Σ (x_l × m_l v_l + R I R^T ω_l)      about W's origin
-//!   drift = |Δ − external impulse| / largest of Σ m‖v‖ (linear), Σ ‖L_link‖ (angular), in the frame of the centre of mass
+//!   drift = |Δ − external impulse|, the angular one about the centre of mass
+//!   scale: largest of Σ m‖v‖ (linear), Σ (‖x_l‖ m‖v‖ + ‖I ω‖) (angular), with x and v seen from the centre of mass
 //!
-//! A single link does not move in that frame: its own momentum about W's origin is the scale then.
+//! So wherever W's origin is, and however an impact passes the centre of mass, the scale is the momentum that is exchanged and the
+//! lever at which it could be. A single link does not move in that frame: its own momentum about W's origin is the scale then.
 
-use crate::effect;
 use crate::model::Base;
-use crate::world::{TouchReport, World};
-use multibody::{calc_armature_energy, calc_kinetic_energy};
+use crate::world::World;
 use spatial::{Vec3, Wrench};
 
 /// Follows a run's momentum from its start.
@@ -32,6 +32,7 @@ pub struct MomentumAudit {
 /// Sums over all links at one instant.
 struct LinkSums {
     total: Wrench,
+    centre: Vec3,
     speed: f64,
     spin: f64,
 }
@@ -65,7 +66,7 @@ impl MomentumAudit {
     pub fn update(&mut self, world: &World) {
         let sums = calc_link_sums(world);
         let impulse = world.state().account.impulse - self.start_impulse;
-        let drift = sums.total - self.start - impulse;
+        let drift = (sums.total - self.start - impulse).about(&sums.centre);
         self.scale_linear = self.scale_linear.max(sums.speed);
         self.scale_angular = self.scale_angular.max(sums.spin);
         self.absolute[0] = self.absolute[0].max(drift.force.norm());
@@ -86,20 +87,22 @@ fn calc_link_sums(world: &World) -> LinkSums {
     });
     total = (0..world.model().vehicles.len()).fold(total, |sum, i| sum + world.carried_momentum(i));
     if links <= 1 {
-        return LinkSums { total, speed: total.force.norm(), spin: total.moment.norm() };
+        let lever = first.norm() / mass;
+        let spin = total.moment.norm().max(lever * total.force.norm());
+        return LinkSums { total, centre: first / mass, speed: total.force.norm(), spin };
     }
     let (centre, drift) = (first / mass, total.force / mass);
     let (mut speed, mut spin) = (0.0, 0.0);
     for_each_link(world, |m, x, momentum| {
         let own = momentum.force - m * drift;
         speed += own.norm();
-        spin += (momentum.moment + (x - centre).cross(&own)).norm();
+        spin += momentum.moment.norm() + (x - centre).norm() * own.norm();
     });
-    LinkSums { total, speed, spin }
+    LinkSums { total, centre, speed, spin }
 }
 
 /// Visits every link with mass properties: mass, centre of mass in W, momentum about that centre.
-fn for_each_link(world: &World, mut visit: impl FnMut(f64, Vec3, Wrench)) {
+pub(crate) fn for_each_link(world: &World, mut visit: impl FnMut(f64, Vec3, Wrench)) {
     for (i, vehicle) in world.model().vehicles.iter().enumerate() {
         for (index, link) in vehicle.tree.links.iter().enumerate() {
             let frame = world.link_frame(i, index);
@@ -110,46 +113,4 @@ fn for_each_link(world: &World, mut visit: impl FnMut(f64, Vec3, Wrench)) {
             visit(link.inertia.mass, frame.pos + arm, Wrench::new(spin, link.inertia.mass * twist.at(&arm)));
         }
     }
-}
-
-/// Where the energy is, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Energy {
-    /// Of motion, the joints' reflected rotors included.
-    pub kinetic: f64,
-    /// In gravity or the tide.
-    pub potential: f64,
-    /// Stored in contact: normal springs and bristles.
-    pub elastic: f64,
-    /// Stored in mechanisms.
-    pub mechanism: f64,
-    /// Held by effects: in their springs, in rotors behind a gear that yields, and in the motion of parts inside bodies.
-    pub effect: f64,
-}
-
-impl Energy {
-    /// At the world's present state.
-    pub fn of(world: &World) -> Self {
-        let model = world.model();
-        let of = |(i, v): (usize, &crate::Vehicle)| {
-            calc_kinetic_energy(world.kinematics(i)) + calc_armature_energy(&v.tree, &world.state().v[v.v_range()])
-        };
-        let kinetic = model.vehicles.iter().enumerate().map(of).sum();
-        let mut potential = 0.0;
-        if !model.environment.is_still() {
-            let mut add = |m, x| potential += model.environment.calc_potential(world.state().time, &x, m);
-            for_each_link(world, |m, x, _| add(m, x));
-            effect::particles(model, world.state()).for_each(|(m, x)| add(m, x));
-        }
-        let elastic = world.touches().map(|t| calc_elastic(world, &t)).sum();
-        let mechanism = world.mechanisms().map(|m| m.stored).sum();
-        let effect = effect::calc_energy(model, world.state(), world.all_kinematics());
-        Self { kinetic, potential, elastic, mechanism, effect }
-    }
-}
-
-fn calc_elastic(world: &World, touch: &TouchReport) -> f64 {
-    let law = world.model().laws[touch.pair].weighted(touch.weight);
-    let bristle = law.friction.map_or(0.0, |f| 0.5 * f.spring().0 * touch.deflection * touch.deflection);
-    law.normal.calc_stored_energy(touch.gap) + bristle
 }

@@ -5,14 +5,16 @@
 //!   τ = −b v + stop(q, v) + dry friction + Σ drives,     drive = clamp(k_p (q_ref − q) + k_d (v_ref − v) + τ_ff, ±limit)
 //!   stop = max(0, k (lower − q) − c v) below, likewise above; never pulls
 //!
-//! Effects add efforts of their own, change what a drive delivers, or part it from the joint by a gear that yields.
+//! Beyond the coordinate's speed limit the drives give nothing in the direction of motion: [`crate::speed_limit`]. Effects add efforts of their own, change what a drive delivers, or part it from the joint by a gear that yields.
 //!
 //! The stop's stiffness brings the joint to rest within about 10 mrad (1 mm) of overtravel at its full effort, up to
 //! 1e5 N·m/rad (1e6 N/m). Dry
 //! friction is the bristle of [`friction`] in one dimension, with the deflection at breakaway of 3e-4 rad or m.
 
-use crate::effect::{Acting, EffectKind, Series};
+use crate::books::Passage;
+use crate::effect::{Acting, EffectKind, Series, Shaft};
 use crate::model::Model;
+use crate::speed_limit::{self, Branch};
 use crate::state::State;
 use friction::{Bristle, Trial};
 use multibody::{Joint, JointKind};
@@ -79,7 +81,7 @@ pub struct Command {
 }
 
 /// The passive laws of one coordinate, and who drives it.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Coordinate {
     /// Whether it is the single coordinate of a revolute or prismatic joint.
     pub is_scalar: bool,
@@ -95,12 +97,33 @@ pub struct Coordinate {
     pub stop_stiffness: f64,
     /// Damping of the stops.
     pub stop_damping: f64,
+    /// Speed at which its actuators stop pushing, rad/s or m/s; infinite for none.
+    pub speed_limit: f64,
     /// Actuators that act here.
     pub actuators: Vec<usize>,
     /// Effects that act here with an effort of their own.
     pub effects: Vec<usize>,
     /// The effect that parts the actuators from the joint: a gear that yields.
     pub series: Option<usize>,
+}
+
+impl Default for Coordinate {
+    /// One that nothing acts on.
+    fn default() -> Self {
+        Self {
+            is_scalar: false,
+            q_index: 0,
+            damping: 0.0,
+            dry: None,
+            limits: None,
+            stop_stiffness: 0.0,
+            stop_damping: 0.0,
+            speed_limit: f64::INFINITY,
+            actuators: Vec::new(),
+            effects: Vec::new(),
+            series: None,
+        }
+    }
 }
 
 /// Deflection at which dry joint friction breaks away, rad or m.
@@ -128,9 +151,9 @@ impl Coordinate {
             limits: joint.position_limits,
             stop_stiffness,
             stop_damping: STOP_TIME * stop_stiffness,
-            actuators: Vec::new(),
-            effects: Vec::new(),
-            series: None,
+            // Zero is what exporters write who know of none.
+            speed_limit: if joint.velocity_limit > 0.0 { joint.velocity_limit } else { f64::INFINITY },
+            ..Self::default()
         }
     }
 
@@ -154,13 +177,18 @@ pub(crate) struct CoordinatePoint {
     pub elapsed: f64,
     /// At an explicit stage: the rate at the step's start, and the time since then.
     pub from: Option<(f64, f64)>,
+    /// At an explicit stage: the rate to which it leads at the step's end; elsewhere that is v'.
+    pub end: Option<f64>,
+    /// Branch of the speed limit that the last line followed.
+    pub branch: Option<Branch>,
 }
 
 impl CoordinatePoint {
     /// At a position and rate that depend on nothing.
     pub fn still(q: f64, v: f64, elapsed: f64) -> Self {
-        let (moved_base, beta, theta, dry_start, from) = (0.0, 0.0, 0.0, 0.0, None);
-        Self { q_base: q, moved_base, v_start: v, beta, theta, dry_start, elapsed, from }
+        let (moved_base, beta, theta, dry_start) = (0.0, 0.0, 0.0, 0.0);
+        let (from, end, branch) = (None, None, None);
+        Self { q_base: q, moved_base, v_start: v, beta, theta, dry_start, elapsed, from, end, branch }
     }
 
     /// The end of a step that moved the coordinate by `moved`, whose laws were last evaluated at `last`.
@@ -179,10 +207,10 @@ pub(crate) struct CoordinateForce {
     pub driven: f64,
     /// What of it arrives on the link side: the same, but for a gear that yields.
     pub through: f64,
-    /// What effects give, beside such a gear.
-    pub by_effects: f64,
-    /// Mean rate of a motor that is not the joint's own.
-    pub motor_rate: Option<f64>,
+    /// Branch of the speed limit, where there is one.
+    pub branch: Option<Branch>,
+    /// −∂τ/∂v' by the speed limit's fall, where it is not in the slope: at an explicit stage.
+    pub fall: f64,
 }
 
 impl Coordinate {
@@ -200,6 +228,61 @@ impl Coordinate {
             ..Trial::default()
         };
         law.eval(&trial).s.x
+    }
+
+    /// What dry friction takes for good while its deflection goes from `start` to `end` under a displacement of `moved`, J: the
+    /// force of the bristle's end times what has slipped at its tip.
+    pub(crate) fn calc_dry_loss(&self, start: f64, end: f64, moved: f64) -> f64 {
+        self.dry.as_ref().map_or(0.0, |law| law.stiffness * end * (moved - (end - start)))
+    }
+
+    /// Power that damping and stops take for good, W.
+    fn calc_loss(&self, q: f64, v: f64) -> f64 {
+        let mut loss = self.damping * v * v;
+        if let Some([lower, upper]) = self.limits {
+            // Depth in the stop, and the rate at which it grows.
+            let (depth, rate) = if q < lower { (lower - q, -v) } else { (q - upper, v) };
+            if depth > 0.0 {
+                let (spring, brake) = (self.stop_stiffness * depth, self.stop_damping * rate);
+                loss += if brake > -spring { brake * rate } else { -spring * rate };
+            }
+        }
+        loss
+    }
+
+    /// Energy in its stop and in the bristle of its dry friction, J.
+    pub(crate) fn calc_energy(&self, q: f64, dry: f64) -> f64 {
+        let depth = self.limits.map_or(0.0, |[lower, upper]| (lower - q).max(q - upper).max(0.0));
+        let bristle = self.dry.as_ref().map_or(0.0, |law| law.stiffness);
+        0.5 * (self.stop_stiffness * depth * depth + bristle * dry * dry)
+    }
+
+    /// Adds the works of actuators and effects in a passage, J; what damping and stops take in it, J.
+    pub(crate) fn add_works(&self, passage: &Passage, acting: &Acting<'_>, works: &mut [f64]) -> f64 {
+        let Passage { q, rate, elapsed, gear, .. } = *passage;
+        let (motor, moved) = ((q + gear[0], rate + gear[1]), elapsed * (rate + gear[1]));
+        let asked = |index: usize| deliver(index, &passage.point, motor, acting).0;
+        // A speed limit leaves less than is asked, of every actuator the same share.
+        let share = passage.limited.map_or(1.0, |left| {
+            let whole: f64 = self.actuators.iter().map(|&index| asked(index)).sum();
+            if whole == 0.0 { 0.0 } else { left / whole }
+        });
+        for &index in &self.actuators {
+            works[index] += share * asked(index) * moved;
+        }
+        for &index in &self.effects {
+            if let EffectKind::Joint(effect) = &acting.model.effects.list[index].kind
+                && !effect.stores()
+            {
+                let at = (&passage.point, rate);
+                let (effort, _) = effect.eval(at, (q, rate), acting.memory(index), passage.time);
+                works[acting.model.work_of_effect(index)] += effort * elapsed * rate;
+            }
+        }
+        if let Some((index, series)) = self.series.and_then(|index| acting.model.series(index)) {
+            works[acting.model.work_of_effect(index)] -= elapsed * series.calc_loss(gear);
+        }
+        elapsed * self.calc_loss(q, rate)
     }
 
     /// The law of this coordinate at the rate `v_new`.
@@ -226,28 +309,38 @@ impl Coordinate {
             out.slope += if brush.sticks { brush.by_deflection.across * at.beta } else { 0.0 };
         }
         match self.series.and_then(|index| acting.model.series(index)) {
-            None => self.add_drives((at, q, v), acting, &mut out),
+            None => self.add_drives((at, v_new), (q, v), acting, &mut out),
             Some((index, series)) => self.add_motor((at, v_new), (index, series), acting, &mut out),
         }
         for &index in &self.effects {
             if let EffectKind::Joint(effect) = &acting.model.effects.list[index].kind {
                 let (effort, slope) = effect.eval((at, v_new), (q, v), acting.memory(index), acting.state.time);
                 out.effort += effort;
-                out.by_effects += effort;
                 out.slope += slope;
             }
         }
         out
     }
 
-    fn add_drives(&self, (at, q, v): (&CoordinatePoint, f64, f64), acting: &Acting<'_>, out: &mut CoordinateForce) {
-        for &index in &self.actuators {
-            let (effort, slope) = deliver(index, at, (q, v), acting);
-            out.effort += effort;
-            out.driven += effort;
-            out.slope += slope;
+    fn add_drives(
+        &self,
+        (at, v_new): (&CoordinatePoint, f64),
+        motor: (f64, f64),
+        acting: &Acting<'_>,
+        out: &mut CoordinateForce,
+    ) {
+        let (mut effort, mut slope) = self.drive(at, motor, acting);
+        if self.speed_limit.is_finite() {
+            let limited = speed_limit::apply(self.speed_limit, (effort, slope), at.end.unwrap_or(v_new), at.branch);
+            (effort, slope) = (limited.effort, limited.slope);
+            (out.branch, out.fall) = (Some(limited.branch), limited.fall);
+            if at.end.is_none() {
+                slope += limited.fall;
+            }
         }
-        out.through = out.driven;
+        out.effort += effort;
+        out.slope += slope;
+        (out.driven, out.through) = (effort, effort);
     }
 
     fn add_motor(
@@ -258,10 +351,15 @@ impl Coordinate {
         out: &mut CoordinateForce,
     ) {
         let drive = |at: &CoordinatePoint, q: f64, v: f64| self.drive(at, (q, v), acting);
-        let motor = series.eval(at, v_new, (acting.memory(index), acting.step), drive);
+        let motor = series.eval(at, v_new, &self.shaft(index, acting), drive);
         out.effort += motor.effort;
         out.slope += motor.slope;
-        (out.driven, out.through, out.motor_rate) = (motor.driven, motor.effort, Some(motor.rate));
+        (out.driven, out.through) = (motor.driven, motor.effort);
+    }
+
+    /// The motor behind the gear that effect `index` is.
+    pub(crate) fn shaft<'a>(&self, index: usize, acting: &Acting<'a>) -> Shaft<'a> {
+        Shaft { memory: acting.memory(index), step: acting.step, speed_limit: self.speed_limit }
     }
 
     /// What all its actuators deliver with the motor at q and v, and −∂/∂v'.

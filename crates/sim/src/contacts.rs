@@ -18,8 +18,9 @@ use crate::dead_weight;
 use crate::model::{Model, PairLaw};
 use crate::state::{ContactMemory, State};
 use crate::workspace::Workspace;
+use contact::NormalForce;
 use friction::{Brush, Friction, Trial, carry, mean_of};
-use spatial::{Frame, Mat3, Vec3};
+use spatial::{Frame, Mat3, Twist, Vec3};
 
 /// One touching point.
 #[derive(Clone, Copy, Debug)]
@@ -32,9 +33,10 @@ pub(crate) struct Touch {
     pub point: Vec3,
     pub local_a: Vec3,
     pub local_b: Vec3,
-    /// A's and B's axes in W at the place of detection.
+    /// A's and B's axes in W at the place of detection, and whether they are those of the step's start.
     pub rot_a: Mat3,
     pub rot_b: Mat3,
+    pub is_at_start: bool,
     /// From A to B.
     pub normal: Vec3,
     pub gap: f64,
@@ -97,31 +99,35 @@ pub(crate) struct Outcome {
 /// Steepest secant that [`Touch::calc_pressing`] believes.
 const SHORTEST_WAY: f64 = -9.0;
 
+/// Where the laws were asked and what they said of slopes: what the next line is drawn from.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Answer {
+    u_new: Vec3,
+    normal: NormalForce,
+    /// Trial deflection, slip and what the brush answered.
+    friction: Option<(Vec3, Vec3, Brush)>,
+    /// Whether this was the first pass of the step in which the slip force had turned.
+    is_first_turn: bool,
+}
+
 impl Touch {
-    /// Evaluates the law at the predicted relative velocity `u_new`, and draws the line for the next solve.
-    ///
-    /// Newton's tangent in slip (turning only) overshoots a point that is about to stop, and would throw it to and fro
-    /// for ever. Where the slip force has turned, the next line is that of the bristle without a bound, which leads to
-    /// the neighbourhood of rest; where that did not settle it, the secant through the unloaded bristle: friction is
-    /// the slope of a convex potential, which the secant's parabola bounds from above, so that every pass descends.
-    pub fn eval(&mut self, law: &PairLaw, u_new: &Vec3, h: f64) -> Outcome {
+    /// Asks the law at the predicted relative velocity `u_new`; the outcome's line is not drawn yet.
+    pub fn eval(&mut self, law: &PairLaw, u_new: Vec3, answer: &mut Answer) {
         let law = &*law.weighted(self.weight);
         let (n, at) = (self.normal, self.place);
         let rate = (1.0 - at.theta) * self.u + at.theta * u_new;
-        let (u_n, rate_n) = (n.dot(u_new), n.dot(&rate));
+        let (u_n, rate_n) = (n.dot(&u_new), n.dot(&rate));
         let gap = at.gap_base + at.beta * u_n;
         let (normal, adhesion) = (law.normal.eval(gap, rate_n), law.normal.adhesion_at(gap));
-        let nn = n * n.transpose();
         let mut out = Outcome {
             law: normal.force * n,
             normal_force: normal.force,
             bears: normal.force + adhesion > 0.0,
             pressing: [self.calc_pressing(normal.force), self.out.pressing[0]],
             passes: self.out.passes + 1,
-            g: -h * (at.beta * normal.d_gap + at.theta * normal.d_rate) * nn,
             ..Outcome::default()
         };
-        let mut excess = Vec3::zeros();
+        *answer = Answer { u_new, normal, friction: None, is_first_turn: false };
         if let Some(friction) = &law.friction {
             let (s_trial, slip) = (at.s_base + at.beta * (u_new - u_n * n), rate - rate_n * n);
             let brush = friction.eval(&Trial {
@@ -135,17 +141,36 @@ impl Touch {
             });
             out.law += brush.force;
             (out.s, out.rest, out.sticks) = (brush.s, brush.rest, brush.sticks);
-            out.turns = self.out.turns + u8::from(self.has_turned(&brush));
-            out.g += h * self.calc_friction_slope(&brush, friction, &out);
-            if out.turns > self.out.turns && out.turns == 1 {
+            let has_turned = self.has_turned(&brush);
+            out.turns = self.out.turns + u8::from(has_turned);
+            answer.friction = Some((s_trial, slip, brush));
+            answer.is_first_turn = has_turned && out.turns == 1;
+        }
+        out.force = out.law;
+        self.out = out;
+    }
+
+    /// Draws the line for the next solve through what the law answered, `self.out`.
+    ///
+    /// Newton's tangent in slip (turning only) overshoots a point that is about to stop, and would throw it to and fro
+    /// for ever. Where the slip force has turned, the next line is that of the bristle without a bound, which leads to
+    /// the neighbourhood of rest; where that did not settle it, the secant through the unloaded bristle: friction is
+    /// the slope of a convex potential, which the secant's parabola bounds from above, so that every pass descends.
+    pub fn draw_line(&mut self, law: &PairLaw, answer: &Answer, h: f64) {
+        let law = &*law.weighted(self.weight);
+        let (n, at, normal) = (self.normal, self.place, answer.normal);
+        let mut g = -h * (at.beta * normal.d_gap + at.theta * normal.d_rate) * (n * n.transpose());
+        let mut excess = Vec3::zeros();
+        if let (Some(friction), Some((s_trial, slip, brush))) = (&law.friction, &answer.friction) {
+            g += h * self.calc_friction_slope(brush, friction, answer.is_first_turn);
+            if answer.is_first_turn {
                 let (stiffness, damping) = friction.spring();
                 let spring = stiffness + damping / at.elapsed;
                 excess = damping / at.elapsed * self.s - spring * s_trial - friction.viscous() * slip - brush.force;
             }
         }
-        out.line = out.law + excess + out.g * (u_new - self.u - self.carried) / h;
-        out.force = out.law;
-        out
+        self.out.line = self.out.law + excess + g * (answer.u_new - self.u - self.carried) / h;
+        self.out.g = g;
     }
 
     /// Normal force that bounds the friction in the next line, when the last one led to `normal`.
@@ -167,14 +192,14 @@ impl Touch {
     ///
     /// A level that falls with speed counts as constant: its slope would take definiteness from the matrix, and the next
     /// pass sees the new level.
-    fn calc_friction_slope(&self, brush: &Brush, friction: &Friction, out: &Outcome) -> Mat3 {
+    fn calc_friction_slope(&self, brush: &Brush, friction: &Friction, is_first_turn: bool) -> Mat3 {
         let (n, at, slip, mut by_s) = (&self.normal, self.place, brush.by_slip, brush.by_deflection);
-        let is_free = by_s.direction == Vec3::zeros() && slip.direction == Vec3::zeros();
+        let is_free = by_s.is_even() && slip.is_even();
         let mut by_slip = friction::Slope { along: slip.along.max(0.0), ..slip };
-        if out.turns > self.out.turns && out.turns == 1 {
+        if is_first_turn {
             let (stiffness, damping) = friction.spring();
             by_s = friction::Slope::even(stiffness + damping / at.elapsed);
-        } else if out.turns > 0 && !is_free {
+        } else if self.out.turns > 0 && !is_free {
             by_s = friction::Slope::even(by_s.across);
             by_slip = friction::Slope::even(slip.across);
         }
@@ -188,21 +213,20 @@ impl Touch {
     /// Whether a force on its bound has turned by more than 90° since the last pass.
     fn has_turned(&self, brush: &Brush) -> bool {
         let before = self.out.law - self.normal * self.normal.dot(&self.out.law);
-        let is_free = brush.by_deflection.direction == Vec3::zeros() && brush.by_slip.direction == Vec3::zeros();
+        let is_free = brush.by_deflection.is_even() && brush.by_slip.is_even();
         !is_free && brush.force.dot(&before) < 0.0
-    }
-
-    /// Lever arms do not matter here: the relative velocity of the two material points.
-    fn relative_velocity(ws: &Workspace, model: &Model, body_a: usize, body_b: usize, point: &Vec3) -> Vec3 {
-        ws.vel_at(model, body_b, point) - ws.vel_at(model, body_a, point)
     }
 }
 
 /// (ω_B − ω_A) × ½ (v_A + v_B) at the contact point, m/s².
 pub(crate) fn calc_carried(model: &Model, ws: &Workspace, touch: &Touch) -> Vec3 {
-    let spin = |body: usize| model.owners.get(body).map_or(Vec3::zeros(), |&(v, b)| ws.kin[v].vel[b].ang);
-    let at = |body: usize| ws.vel_at(model, body, &touch.point);
-    (spin(touch.body_b) - spin(touch.body_a)).cross(&(0.5 * (at(touch.body_a) + at(touch.body_b))))
+    let [a, b] = [touch.body_a, touch.body_b].map(|body| ws.twist_at(model, body, &touch.point));
+    carried_of(&a, &b)
+}
+
+/// The same of the two bodies' twists about the point.
+fn carried_of(a: &Twist, b: &Twist) -> Vec3 {
+    (b.ang - a.ang).cross(&(0.5 * (a.lin + b.lin)))
 }
 
 /// Speculative distance: a point counts if it may touch within the step. It moves at most this much.
@@ -235,40 +259,40 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
         let contact = ws.points[i];
         let (body_a, body_b) = model.pair_bodies(contact.pair as usize);
         let point = 0.5 * (contact.point_a_w + contact.point_b_w);
-        let u = Touch::relative_velocity(ws, model, body_a, body_b, &point);
+        let (twist_a, twist_b) = (ws.twist_at(model, body_a, &point), ws.twist_at(model, body_b, &point));
+        let u = twist_b.lin - twist_a.lin;
         if contact.gap + 2.0 * h * contact.normal_w.dot(&u).min(0.0) >= 0.0 {
             continue;
         }
-        ws.touches.push(Touch {
+        let (frame_a, frame_b) = (&ws.frames[body_a], &ws.frames[body_b]);
+        let law = &model.laws[contact.pair as usize];
+        let mut touch = Touch {
             pair: contact.pair,
             feature: contact.feature,
             body_a,
             body_b,
             point,
-            local_a: ws.frames[body_a].inverse_point(&point),
-            local_b: ws.frames[body_b].inverse_point(&point),
-            rot_a: ws.frames[body_a].rot,
-            rot_b: ws.frames[body_b].rot,
+            local_a: frame_a.inverse_point(&point),
+            local_b: frame_b.inverse_point(&point),
+            rot_a: frame_a.rot,
+            rot_b: frame_b.rot,
+            is_at_start: frame_a.rot == ws.frames_start[body_a].rot && frame_b.rot == ws.frames_start[body_b].rot,
             normal: contact.normal_w,
             gap: contact.gap,
             weight: contact.weight,
             s: Vec3::zeros(),
-            rest: 0.0,
+            rest: law.friction.as_ref().map_or(1.0, Friction::initial_rest),
             grain: Vec3::zeros(),
             turn: Vec3::zeros(),
             u,
-            carried: Vec3::zeros(),
+            carried: carried_of(&twist_a, &twist_b) * h,
             place: Place::default(),
             out: Outcome::default(),
-        });
-    }
-    for i in 0..ws.touches.len() {
-        ws.touches[i].carried = calc_carried(model, ws, &ws.touches[i]) * h;
-        let law = &model.laws[ws.touches[i].pair as usize];
-        ws.touches[i].rest = law.friction.as_ref().map_or(1.0, Friction::initial_rest);
+        };
         if let Some(grain) = &law.grain {
-            ws.touches[i].grain = grain.calc_direction(&ws.touches[i]);
+            touch.grain = grain.calc_direction(&touch);
         }
+        ws.touches.push(touch);
     }
     let turned = Turned { from: &ws.frames_start, to: &ws.frames };
     remember(&model.scene, &state.bristles, &mut ws.touches, &turned);
@@ -369,12 +393,14 @@ fn carry_with_both((s_a, s_b): (Vec3, Vec3), (n_a, n_b): (Vec3, Vec3), to: &Vec3
 
 impl Touch {
     fn recall(&mut self, memory: &ContactMemory, turned: &Turned<'_>) {
-        let bodies = (self.body_a, self.body_b);
-        self.s = turned.deflection(bodies, &memory.s_w, &memory.normal_w, &self.normal);
-        self.rest = memory.rest;
-        if memory.turn_w != Vec3::zeros() {
-            self.turn = turned.deflection(bodies, &memory.turn_w, &memory.normal_w, &self.normal);
-        }
+        let carried = |s: &Vec3| {
+            if self.is_at_start {
+                return carry(s, &memory.normal_w, &self.normal);
+            }
+            turned.deflection((self.body_a, self.body_b), s, &memory.normal_w, &self.normal)
+        };
+        let turn = if memory.turn_w == Vec3::zeros() { self.turn } else { carried(&memory.turn_w) };
+        (self.s, self.rest, self.turn) = (carried(&memory.s_w), memory.rest, turn);
     }
 
     /// What is kept of the point when the bodies have moved on from the place of detection to frames `a` and `b`: the
@@ -388,8 +414,8 @@ impl Touch {
         if turn_w != Vec3::zeros() {
             turn_w = carry_with_both(with(&turn_w), normals, &normal_w);
         }
-        let Self { pair, feature, local_b: point_b, .. } = *self;
-        ContactMemory { pair, feature, s_w, normal_w, turn_w, rest: self.out.rest, point_b }
+        let Self { pair, feature, local_b: point_b, weight, .. } = *self;
+        ContactMemory { pair, feature, s_w, normal_w, turn_w, rest: self.out.rest, point_b, weight }
     }
 }
 
@@ -408,9 +434,8 @@ pub(crate) fn commit_bristles(model: &Model, state: &mut State, ws: &mut Workspa
             let start = b0.point(&touch.local_b) - a0.point(&touch.local_a);
             // Detected at the start, the two points coincide there; detected at mid-step they may not, and what parts them
             // turns with the bodies: taken as it was, its normal part would enter the plane step by step.
-            let is_at_start = touch.rot_a == a0.rot && touch.rot_b == b0.rot;
             let with = |from: &Frame, to: &Frame| to.rot * from.rot.tr_mul(&start);
-            let turned = if is_at_start { start } else { mean_of(&with(a0, a1), &with(b0, b1)) };
+            let turned = if touch.is_at_start { start } else { mean_of(&with(a0, a1), &with(b0, b1)) };
             touch.remembered(&touch.s, &(now - turned), (a1, b1))
         } else {
             touch.remembered(&touch.out.s, &Vec3::zeros(), (a1, b1))

@@ -20,6 +20,18 @@ pub enum ModelError {
          an air bearing use free = [\"x\", \"y\", \"yaw\"]"
     )]
     Mask(String),
+    /// A joint and one that follows it cannot both be within their limits.
+    #[error(
+        "vehicle \"{vehicle}\": joint \"{}\" may stand at {} … {}, and \"{}\", which follows it, lets it stand at {} … {} \
+         only; widen a <limit>, or change multiplier or offset of the <mimic>",
+        .range.leader, .range.own[0], .range.own[1], .range.follower, .range.allowed[0], .range.allowed[1]
+    )]
+    EmptyRange {
+        /// Its name.
+        vehicle: String,
+        /// The two joints and their ranges.
+        range: multibody::EmptyRange,
+    },
     /// An actuator points at no single-coordinate joint.
     #[error("actuator \"{0}\" needs a revolute or prismatic joint that follows no other")]
     Actuator(String),

@@ -26,10 +26,12 @@
 
 mod account;
 mod actuator;
+mod books;
 mod contacts;
 mod dead_weight;
 mod drive;
 mod effect;
+mod energy;
 mod environment;
 mod error;
 mod mechanism;
@@ -39,19 +41,21 @@ mod rk4;
 mod rk4_bristle;
 mod run;
 mod solve;
+mod speed_limit;
 mod state;
 mod step;
 mod weight;
 mod workspace;
 mod world;
 
-pub use account::{Energy, MomentumAudit};
+pub use account::MomentumAudit;
 pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
 pub use drive::{Drive, DriveAxis, DrivePath, Motion};
 pub use effect::{
     Appendage, Axes, BodyAction, BodyEffect, BodyLaw, BodyMotion, BodyPlace, DryLevel, Effect, EffectKind, JointEffect,
     JointLaw, LineEffect, LineLaw, Load, MemorySlot, Series, Slosh, Sphere, memory_layout,
 };
+pub use energy::{Energy, EnergyAudit, EnergyBalance, Works};
 pub use environment::Environment;
 pub use error::{ModelError, StepError};
 pub use mechanism::{

@@ -188,9 +188,6 @@ pub struct ModelSpec {
     pub integrator: Integrator,
     /// Step, s.
     pub step: f64,
-    /// A force (N, W axes) that is added to B of every touching point and not to A: zero, but for the test which shows
-    /// that the momentum account sees an error of one microneutron.
-    pub one_sided_force: Vec3,
 }
 
 /// The immutable world.
@@ -228,9 +225,10 @@ pub struct Model {
     pub(crate) mechanism_sides: Vec<[(usize, Frame); 2]>,
     /// Pairs whose guide presses them together with a weight; nothing is detected for them.
     pub(crate) dead_weights: Vec<crate::dead_weight::DeadWeight>,
+    /// Coordinates whose actuators a speed limit stops, but for those behind a gear that yields.
+    pub(crate) speed_limited: Vec<usize>,
     /// Bounding radius of each body's colliders about its origin, m; negative where it has none.
     pub(crate) collider_radius: Vec<f64>,
-    pub(crate) one_sided_force: Vec3,
 }
 
 impl Model {
@@ -272,12 +270,13 @@ impl Model {
             effects: Effects::default(),
             mechanism_sides,
             dead_weights: Vec::new(),
+            speed_limited: Vec::new(),
             collider_radius,
-            one_sided_force: spec.one_sided_force,
         };
         model.attach_drives()?;
         model.effects = Effects::build(spec.effects, &mut model)?;
         crate::dead_weight::attach(&mut model)?;
+        model.speed_limited = speed_limited(&model.coordinates);
         Ok(model)
     }
 
@@ -331,6 +330,16 @@ impl Model {
         self.vehicles.last().map_or(0, |v| v.v0 + v.tree.nv)
     }
 
+    /// How many actuators, drives and effects have books of their own.
+    pub(crate) fn n_works(&self) -> usize {
+        self.actuators.len() + self.drives.len() + self.effects.list.len()
+    }
+
+    /// Where the books of an effect stand in [`crate::State::works`].
+    pub(crate) fn work_of_effect(&self, index: usize) -> usize {
+        self.actuators.len() + self.drives.len() + index
+    }
+
     /// Index of a vehicle by name.
     pub fn vehicle(&self, name: &str) -> Option<usize> {
         self.vehicles.iter().position(|v| v.name == name)
@@ -356,6 +365,11 @@ impl Model {
         (self.scene.colliders()[a].body, self.scene.colliders()[b].body)
     }
 
+    /// Radius of the ball about a global body's origin that holds its shapes, m; zero where it has none, and for what has no end.
+    pub fn collider_radius(&self, body: usize) -> f64 {
+        self.collider_radius[body].max(0.0)
+    }
+
     /// Name of a body for messages: `vehicle/joint's child`.
     pub fn body_name(&self, body: usize) -> String {
         let Some(&(vehicle, local)) = self.owners.get(body) else { return "world".to_owned() };
@@ -376,6 +390,9 @@ fn number_vehicles(specs: Vec<VehicleSpec>) -> Result<Vec<Vehicle>, ModelError> 
             return Err(ModelError::MasslessBase(name));
         }
         check_mask(&name, base)?;
+        if let Some(range) = tree.find_empty_range() {
+            return Err(ModelError::EmptyRange { vehicle: name, range });
+        }
         let vehicle = Vehicle { name, tree, base, q0, v0, body0 };
         (q0, v0, body0) = (q0 + vehicle.tree.nq, v0 + vehicle.tree.nv, body0 + vehicle.tree.bodies.len());
         vehicles.push(vehicle);
@@ -467,6 +484,11 @@ fn calc_bounding_radius(shape: &contact::Shape) -> f64 {
             parts.iter().map(|(pose, s)| pose.translation.vector.norm() + calc_bounding_radius(s)).fold(0.0, f64::max)
         }
     }
+}
+
+fn speed_limited(coordinates: &[Coordinate]) -> Vec<usize> {
+    let is_limited = |c: &Coordinate| c.speed_limit.is_finite() && !c.actuators.is_empty() && c.series.is_none();
+    (0..coordinates.len()).filter(|i| is_limited(&coordinates[*i])).collect()
 }
 
 fn coordinates_of(vehicle: &Vehicle) -> Vec<Coordinate> {

@@ -18,6 +18,8 @@ use spatial::{Mat3, SpatialMatrix, Vec3, Wrench};
 pub(crate) struct PivotTouch {
     /// Its place among the touches.
     pub touch: usize,
+    pub pair: u32,
+    pub weight: f64,
     pub bodies: [usize; 2],
     /// Angular deflection at the start, carried into the present plane, and B's angular velocity against A.
     start: Vec3,
@@ -25,6 +27,9 @@ pub(crate) struct PivotTouch {
     base: Vec3,
     beta: f64,
     elapsed: f64,
+    normal: Vec3,
+    /// Angular deflection if nothing slipped, and what the law made of it.
+    trial: Vec3,
     out: PivotMoment,
     /// Moment at zero gain, its fall with the gain, and what the solve gave.
     line: Vec3,
@@ -49,12 +54,16 @@ pub(crate) fn find_pivots(model: &Model, ws: &mut Workspace) {
         let rate = spin_of(model, ws, touch.body_b) - spin_of(model, ws, touch.body_a);
         ws.pivots.push(PivotTouch {
             touch: index,
+            pair: touch.pair,
+            weight: touch.weight,
             bodies: [touch.body_a, touch.body_b],
             start: touch.turn,
             rate,
             base: touch.turn,
             beta: 0.0,
             elapsed: 1.0,
+            normal: touch.normal,
+            trial: touch.turn,
             out: PivotMoment::default(),
             line: Vec3::zeros(),
             slope: Mat3::zeros(),
@@ -70,6 +79,7 @@ impl PivotTouch {
         let laws = model.laws[touch.pair as usize].weighted(touch.weight);
         let Some(law) = &laws.pivot else { return };
         let trial = self.base + self.beta * (self.rate + gain);
+        self.trial = trial;
         let (normal, normal_force) = (touch.normal, touch.out.normal_force);
         self.out = law.eval(&Turn { start: self.start, trial, normal, elapsed: self.elapsed, normal_force });
         let about_normal = self.out.spin_slope * (normal * normal.transpose());
@@ -77,10 +87,37 @@ impl PivotTouch {
         self.line = self.out.moment + self.slope * gain;
     }
 
+    /// Of its angular bristles, N·m/rad.
+    fn stiffness(&self, model: &Model) -> f64 {
+        model.laws[self.pair as usize].pivot.as_ref().map_or(0.0, |p| self.weight * p.stiffness)
+    }
+
     fn gain(&self, ws: &Workspace) -> Vec3 {
         ws.dvel[self.bodies[1]].ang - ws.dvel[self.bodies[0]].ang
     }
 }
+
+impl PivotTouch {
+    /// What the law takes for good in a step of `h`, J.
+    fn calc_loss(&self, model: &Model, h: f64) -> f64 {
+        let turned = (self.trial - self.start) * (h / self.elapsed);
+        let end = self.end_turn(h);
+        -self.out.moment.dot(&turned) - self.stiffness(model) * self.out.turn.dot(&(end - self.start))
+    }
+
+    /// Angular deflection at the end of a step of `h`: what sticks at mid-step goes on to there, what slips stays as its law left it.
+    fn end_turn(&self, h: f64) -> Vec3 {
+        let slipped = self.trial - self.out.turn;
+        let went_on =
+            |along: &Vec3, slip: &Vec3| if slip.norm() <= ON_BOUND * along.norm() { h / self.elapsed } else { 1.0 };
+        let split = |v: &Vec3| (self.normal * self.normal.dot(v), v - self.normal * self.normal.dot(v));
+        let ((spin, roll), (spin_slip, roll_slip)) = (split(&(self.out.turn - self.start)), split(&slipped));
+        self.start + spin * went_on(&spin, &spin_slip) + roll * went_on(&roll, &roll_slip)
+    }
+}
+
+/// Share of a deflection's change that counts as no slip: round-off.
+const ON_BOUND: f64 = 1e-9;
 
 /// Decides where the laws are evaluated, as the contact's own was, and draws the first lines.
 pub(crate) fn place(model: &Model, ws: &mut Workspace, h: f64) {
@@ -116,7 +153,7 @@ pub(crate) fn eval_explicit(model: &Model, ws: &mut Workspace, elapsed: f64) {
 pub(crate) fn add_stiffness(model: &Model, ws: &mut Workspace, h: f64) {
     for pivot in &ws.pivots {
         for body in pivot.bodies.into_iter().filter(|b| *b < model.owners.len()) {
-            ws.extra[body] += calc_matrix(pivot, h);
+            *ws.extra[body].get_or_insert_default() += calc_matrix(pivot, h);
         }
     }
 }
@@ -165,14 +202,19 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
             let impulse = Wrench::new(sign * h * pivot.moment, Vec3::zeros());
             state.momentum[vehicle] += world_wrench(owner, &anchor, &impulse);
         }
-        let gain = 0.5 * pivot.gain(ws);
-        state.account.contact_work += h * pivot.moment.dot(&(pivot.rate + gain));
+        let (gain, is_stage) = (pivot.gain(ws), ws.since.is_some());
+        let work = h * pivot.moment.dot(&(pivot.rate + ws.gain_share * gain));
+        state.account.contact_work += work;
+        state.account.contact_to_motion += h * pivot.moment.dot(&(pivot.rate + 0.5 * gain));
+        state.account.contact_intake += (-work).max(0.0);
+        state.account.contact_loss += if is_stage { -work } else { pivot.calc_loss(model, h) };
     }
 }
 
 /// What became of the deflections, for the touches' memories; in the plane of detection.
 pub(crate) fn commit(ws: &mut Workspace) {
     for pivot in &ws.pivots {
-        ws.touches[pivot.touch].turn = pivot.out.turn;
+        let is_stage = ws.since.is_some();
+        ws.touches[pivot.touch].turn = if is_stage { pivot.out.turn } else { pivot.end_turn(ws.step) };
     }
 }

@@ -7,6 +7,7 @@
 //! have rates; what becomes of a bristle's is the business of [`crate::rk4_bristle`].
 
 use crate::actuator::CoordinatePoint;
+use crate::books;
 use crate::contacts::{Touch, Turned, find_memory, find_touches};
 use crate::drive;
 use crate::effect::{self, Acting};
@@ -15,8 +16,9 @@ use crate::model::Model;
 use crate::pivots;
 use crate::rk4_bristle::{self, Stage, Track};
 use crate::solve;
+use crate::speed_limit;
 use crate::state::{Account, ContactMemory, State};
-use crate::step::{add_impulses, begin, calc_bias, calc_external, finish, moved_base};
+use crate::step::{MAX_SOLVES, add_impulses, begin, calc_bias, calc_external, finish, moved_base};
 use crate::workspace::Workspace;
 use friction::{BrushRate, Trial, carry};
 use spatial::{Mat3, Twist, Vec3, Wrench, rotation_rate_of_vector};
@@ -45,6 +47,7 @@ struct Rates {
     /// Per bristle slot, in the plane and the axes of the step's start.
     s: Vec<Vec3>,
     effects: Vec<f64>,
+    works: Vec<f64>,
     account: Account,
 }
 
@@ -60,6 +63,7 @@ impl Rates {
         zero(&mut self.v, model.nv());
         zero(&mut self.s, slots);
         zero(&mut self.effects, model.effects.n_memory());
+        zero(&mut self.works, model.n_works());
         self.account = Account::default();
     }
 
@@ -73,6 +77,7 @@ impl Rates {
         add(&mut self.v, &other.v, k);
         add(&mut self.s, &other.s, k);
         add(&mut self.effects, &other.effects, k);
+        add(&mut self.works, &other.works, k);
         self.account.add_scaled(&other.account, k);
     }
 }
@@ -94,6 +99,9 @@ const STAGES: [(f64, f64); 4] = [(0.0, 1.0 / 6.0), (0.5, 1.0 / 3.0), (0.5, 1.0 /
 pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     let h = ws.step;
     begin(model, state, ws);
+    // A stage's works are rates: nothing gains within it.
+    ws.gain_share = 0.0;
+    let bristles = books::calc_bristle_energy(model, &state.bristles);
     let mut rk = std::mem::take(&mut ws.rk);
     rk.start.copy_from(state);
     for (index, (node, weight)) in STAGES.into_iter().enumerate() {
@@ -121,12 +129,15 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     place(model, state, &mut ws.displacement, &from, h);
     drive::place(model, state, ws.end);
     state.account.add_scaled(&rk.sum.account, h);
+    state.works.iter_mut().zip(&rk.sum.works).for_each(|(sum, rate)| *sum += rate * h);
     rk4_bristle::place_at_the_end(model, &rk.tracks, &mut state.bristles);
     ws.rk = rk;
     ws.update_positions(model, state);
     finish(model, state, ws);
     pivots::commit(ws);
     carry_to_the_end(model, state, ws);
+    // Stages have booked the whole work of friction as lost; what the bristles hold of it is not.
+    state.account.contact_loss -= books::calc_bristle_energy(model, &state.bristles) - bristles;
     mechanism::commit(model, state, ws);
 }
 
@@ -140,8 +151,8 @@ fn open_slots(model: &Model, ws: &Workspace, slots: &mut Vec<ContactMemory>) {
         }
         let compression = law.normal.calc_compression(touch.gap, touch.normal.dot(&touch.u));
         let s_w = law.friction.map_or(Vec3::zeros(), |f| f.eval_rate(&trial_of(touch, compression)).s);
-        let Touch { pair, feature, normal: normal_w, turn: turn_w, rest, local_b: point_b, .. } = *touch;
-        slots.push(ContactMemory { pair, feature, s_w, normal_w, turn_w, rest, point_b });
+        let Touch { pair, feature, normal: normal_w, turn: turn_w, rest, local_b: point_b, weight, .. } = *touch;
+        slots.push(ContactMemory { pair, feature, s_w, normal_w, turn_w, rest, point_b, weight });
     }
 }
 
@@ -209,9 +220,7 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     // Bases move by their momentum; accelerations are those of joints alone.
     if model.nv() > 0 {
         calc_bias(model, state, ws, false);
-        if !solve::solve_joints(model, ws) {
-            ws.v_gain.fill(f64::NAN);
-        }
+        solve_joints(model, state, ws, &rk.start.v);
         for (rest, _) in &ws.held {
             let share = std::mem::take(&mut ws.v_gain[rest.coordinate]).abs() / rest.acceleration;
             ws.unrest = if share.is_nan() { f64::INFINITY } else { ws.unrest.max(share) };
@@ -223,14 +232,16 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
     state.work.rate_evaluations += 1;
     ws.v_gain.fill(0.0);
     ws.dvel.fill(Twist::default());
-    let account = state.account;
+    let account = std::mem::take(&mut state.account);
+    std::mem::swap(&mut rk.rate.works, &mut state.works);
     rk.rate.momentum.copy_from_slice(&state.momentum);
     state.momentum.fill(Wrench::default());
-    state.account = Account::default();
     add_impulses(model, state, ws, 1.0);
+    books::add_coordinates(model, state, ws);
     std::mem::swap(&mut rk.rate.momentum, &mut state.momentum);
-    (rk.rate.account, state.account) = (state.account, account);
-    drive::add_rates(model, state, ws, (&rk.rate.momentum, &mut rk.rate.account), &rk.rate.v);
+    drive::add_rates(model, state, ws, &rk.rate.momentum, &rk.rate.v);
+    std::mem::swap(&mut rk.rate.works, &mut state.works);
+    rk.rate.account = std::mem::replace(&mut state.account, account);
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         let (q, v) = (vehicle.q_range(), vehicle.v_range());
         let twist = ws.kin[i].vel[0];
@@ -238,6 +249,18 @@ fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Sta
         let xi = &mut ws.displacement[v.clone()];
         vehicle.tree.calc_difference(&rk.start.q[q.clone()], &state.q[q.clone()], xi);
         vehicle.tree.calc_displacement_rate(&rk.start.q[q], xi, &state.v[v.clone()], &mut rk.rate.xi[v]);
+    }
+}
+
+/// Accelerations of the joints, within the speed limits of their motors.
+fn solve_joints(model: &Model, state: &State, ws: &mut Workspace, v_start: &[f64]) {
+    for _ in 0..MAX_SOLVES {
+        if !solve::solve_joints(model, ws) {
+            return ws.v_gain.fill(f64::NAN);
+        }
+        if speed_limit::hold_at_stage(model, state, ws, v_start) {
+            break;
+        }
     }
 }
 
@@ -298,10 +321,12 @@ fn eval_coordinates(model: &Model, state: &State, ws: &mut Workspace, rk: &Stage
             dry_start: rk.start.dry[i],
             elapsed: ws.step,
             from: ws.since.map(|since| (rk.start.v[i], since)),
+            end: Some(rk.start.v[i]),
+            branch: None,
         };
         let force = coordinate.eval(&point, v, &Acting { model, state, step: ws.step, since: ws.since });
-        ws.coordinate_points[i] = point;
+        ws.coordinate_points[i] = CoordinatePoint { branch: force.branch, ..point };
         ws.coordinate_forces[i] = force;
-        ws.coordinate_lines[i] = (force.effort, 0.0);
+        ws.coordinate_lines[i] = (force.effort, ws.step * force.fall);
     }
 }

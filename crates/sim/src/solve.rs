@@ -4,15 +4,16 @@
 //!
 //! JᵀGJ within a vehicle is the mass matrix of links whose inertia is increased by S = Σ XᵀGX; between two bodies only
 //! −J_aᵀ S_ab J_b is extra, once per pair of bodies. Vehicles that touch form an island; each island is factored by
-//! itself (UᵀU, upper triangle, row-major: inner loops run along rows and keep one order of addition).
+//! itself (Cholesky's method without roots, upper triangle, row-major: inner loops run along rows and keep one order of
+//! addition). Below the diagonal the matrix is neither written nor read.
 
 use crate::contacts::Touch;
 use crate::mechanism::{self, Coupling};
 use crate::model::Model;
 use crate::pivots;
 use crate::workspace::Workspace;
-use multibody::{Kinematics, Tree};
 use spatial::{Mat3, SpatialMatrix, Twist, Vec3, Wrench};
+use std::cmp::Ordering;
 
 /// Row of a body's freedom that its base's guide holds.
 const HELD: usize = usize::MAX;
@@ -30,6 +31,8 @@ pub(crate) struct Islands {
     matrix: Vec<f64>,
     rhs: Vec<Vec<f64>>,
     scratch: Vec<f64>,
+    /// S_ab of the pairs of bodies that touch.
+    cross: Vec<([usize; 2], SpatialMatrix)>,
     /// Whether vehicles without joints are left out.
     leaves_rigid: bool,
 }
@@ -46,6 +49,7 @@ impl Islands {
             matrix: vec![0.0; n * (n + LANES)],
             rhs: model.vehicles.iter().map(|_| Vec::with_capacity(n)).collect(),
             scratch: vec![0.0; largest * largest],
+            cross: Vec::new(),
             leaves_rigid: false,
         }
     }
@@ -86,27 +90,21 @@ impl Islands {
 
 /// Assembles and factors every island's matrix; returns `false` if one is not positive definite.
 pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
-    // Forces that do not answer to gains, as under Runge–Kutta, stiffen nothing.
-    let answers = |touch: &Touch| touch.out.g != Mat3::zeros();
     let is_stiffened = !ws.couplings.is_empty() || !ws.pivots.is_empty() || ws.touches.iter().any(answers);
     if is_stiffened {
-        ws.extra.fill(SpatialMatrix::default());
+        ws.extra.fill(None);
     }
-    for touch in ws.touches.iter().filter(|t| answers(t)) {
-        for body in [touch.body_a, touch.body_b] {
-            if let Some(&(vehicle, _)) = model.owners.get(body) {
-                let r = touch.point - ws.kin[vehicle].anchor;
-                ws.extra[body] += SpatialMatrix::from_point(&touch.out.g, &r, &r);
-            }
-        }
-    }
+    add_touches(model, ws);
     mechanism::add_stiffness(model, ws, h);
     pivots::add_stiffness(model, ws, h);
     ws.islands.regroup(model, &ws.touches, &ws.couplings);
     for i in 0..model.vehicles.len() {
         add_vehicle(model, ws, i, (h, is_stiffened));
     }
-    add_cross_terms(model, ws);
+    for k in 0..ws.islands.cross.len() {
+        let (bodies, coupling) = ws.islands.cross[k];
+        add_cross(model, ws, bodies, &coupling);
+    }
     for k in 0..ws.couplings.len() {
         if let Some(([a, b], coupling)) = mechanism::calc_cross(model, ws, k, h) {
             add_cross(model, ws, [a, b], &coupling);
@@ -121,107 +119,162 @@ pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
     size.iter().zip(start.iter()).all(|(n, at)| cholesky(&mut matrix[*at..*at + n * padded(*n)], *n))
 }
 
+/// Whether a touch stiffens anything: forces that do not answer to gains, as under Runge–Kutta, do not.
+fn answers(touch: &Touch) -> bool {
+    touch.out.g != Mat3::zeros()
+}
+
+/// What touches add to the bodies' own inertia, and between the two bodies of each pair: summed about B's anchor, then moved
+/// to A's. A pair's touches stand beside each other.
+fn add_touches(model: &Model, ws: &mut Workspace) {
+    let Workspace { touches, kin, extra, islands, .. } = ws;
+    let bodies_of = |t: &Touch| [t.body_a, t.body_b];
+    islands.cross.clear();
+    for run in touches.chunk_by(|t, u| bodies_of(t) == bodies_of(u)) {
+        let [a, b] = bodies_of(&run[0]);
+        let anchor = |body: usize| model.owners.get(body).map(|&(vehicle, _)| kin[vehicle].anchor);
+        let (anchor_a, anchor_b) = (anchor(a), anchor(b));
+        let Some(origin) = anchor_b.or(anchor_a) else { continue };
+        let mut sum = SpatialMatrix::default();
+        let mut is_stiff = false;
+        for touch in run.iter().filter(|t| answers(t)) {
+            sum += SpatialMatrix::from_point(&touch.out.g, &(touch.point - origin));
+            is_stiff = true;
+        }
+        if !is_stiff {
+            continue;
+        }
+        *extra[if anchor_b.is_some() { b } else { a }].get_or_insert_default() += sum;
+        if let (Some(anchor_a), Some(anchor_b)) = (anchor_a, anchor_b) {
+            let [between, own] = sum.about_first(&(anchor_b - anchor_a));
+            *extra[a].get_or_insert_default() += own;
+            islands.cross.push(([a, b], between));
+        }
+    }
+}
+
 fn add_vehicle(model: &Model, ws: &mut Workspace, i: usize, (h, is_stiffened): (f64, bool)) {
     let vehicle = &model.vehicles[i];
     if vehicle.tree.nv == 0 && (vehicle.base.is_held() || ws.islands.leaves_rigid) {
         return;
     }
     let slopes = &ws.coordinate_lines[vehicle.v0..vehicle.v0 + vehicle.tree.nv];
-    if vehicle.base.is_held() && !is_stiffened {
-        let islands = &mut ws.islands;
-        let group = islands.group[i];
-        let (stride, first) = (padded(islands.size[group]), islands.rows[i][6]);
-        let own = &mut islands.matrix[islands.start[group] + first * (stride + 1)..];
-        ws.dynamics[i].add_joint_mass_matrix(&vehicle.tree, &ws.kin[i], own, stride);
-        for (k, (_, slope)) in slopes.iter().enumerate() {
-            own[k * (stride + 1)] += h * slope;
-        }
-        return;
-    }
-    let n = 6 + vehicle.tree.nv;
-    let bodies = vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len();
-    let extra = if is_stiffened { &ws.extra[bodies] } else { &[] };
     let islands = &mut ws.islands;
-    ws.dynamics[i].calc_mass_matrix(&vehicle.tree, &ws.kin[i], extra, &mut islands.scratch[..n * n], n);
     let group = islands.group[i];
     let (at, stride, rows) = (islands.start[group], padded(islands.size[group]), &islands.rows[i]);
-    for (k, &row) in rows.iter().enumerate().filter(|(_, r)| **r != HELD) {
-        let target = &mut islands.matrix[at + row * stride..at + (row + 1) * stride];
-        for (l, &column) in rows.iter().enumerate().filter(|(_, c)| **c != HELD) {
-            target[column] = islands.scratch[k * n + l];
-        }
-        if k >= 6 {
-            target[row] += h * slopes[k - 6].1;
-        }
-    }
-}
-
-fn add_cross_terms(model: &Model, ws: &mut Workspace) {
-    let mut i = 0;
-    while i < ws.touches.len() {
-        let (a, b) = (ws.touches[i].body_a, ws.touches[i].body_b);
-        let both = model.owners.get(a).zip(model.owners.get(b));
-        let mut coupling = SpatialMatrix::default();
-        while i < ws.touches.len() && (ws.touches[i].body_a, ws.touches[i].body_b) == (a, b) {
-            if let Some((&(va, _), &(vb, _))) = both {
-                let touch = &ws.touches[i];
-                let (ra, rb) = (touch.point - ws.kin[va].anchor, touch.point - ws.kin[vb].anchor);
-                coupling += SpatialMatrix::from_point(&touch.out.g, &ra, &rb);
+    let bodies = vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len();
+    let extra = if is_stiffened { &ws.extra[bodies] } else { &[] };
+    let mask = vehicle.base.mask();
+    if mask == [true; 6] {
+        let own = &mut islands.matrix[at + rows[0] * (stride + 1)..];
+        ws.dynamics[i].add_mass_matrix(&vehicle.tree, &ws.kin[i], extra, own, stride);
+    } else if vehicle.base.is_held() && !is_stiffened {
+        let own = &mut islands.matrix[at + rows[6] * (stride + 1)..];
+        ws.dynamics[i].add_joint_mass_matrix(&vehicle.tree, &ws.kin[i], own, stride);
+    } else {
+        let n = 6 + vehicle.tree.nv;
+        let all = &mut islands.scratch[..n * n];
+        all.fill(0.0);
+        ws.dynamics[i].add_mass_matrix(&vehicle.tree, &ws.kin[i], extra, all, n);
+        for (k, &row) in rows.iter().enumerate().filter(|(_, r)| **r != HELD) {
+            for (l, &column) in rows.iter().enumerate().skip(k).filter(|(_, c)| **c != HELD) {
+                islands.matrix[at + row * stride + column] = all[k * n + l];
             }
-            i += 1;
         }
-        if both.is_some() && coupling != SpatialMatrix::default() {
-            add_cross(model, ws, [a, b], &coupling);
-        }
+    }
+    for (&row, (_, slope)) in rows[6..].iter().zip(slopes) {
+        islands.matrix[at + row * (stride + 1)] += h * slope;
     }
 }
 
-/// Subtracts JₐᵀC J_b and its transpose.
+/// Subtracts JₐᵀC J_b and its transpose, of which the upper triangle.
 fn add_cross(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: &SpatialMatrix) {
+    match model.owners[a].0.cmp(&model.owners[b].0) {
+        // A vehicle's rows stand before those of the vehicles behind it.
+        Ordering::Less => add_between(model, ws, [a, b], coupling),
+        Ordering::Greater => add_between(model, ws, [b, a], &coupling.transpose()),
+        Ordering::Equal => add_within(model, ws, [a, b], coupling),
+    }
+}
+
+/// The bodies are of two vehicles, A's the first.
+fn add_between(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: &SpatialMatrix) {
     let ((va, la), (vb, lb)) = (model.owners[a], model.owners[b]);
     let islands = &mut ws.islands;
     let group = islands.group[va];
     let (at, stride) = (islands.start[group], padded(islands.size[group]));
     let (rows_a, rows_b, matrix) = (&islands.rows[va], &islands.rows[vb], &mut islands.matrix[at..]);
-    let mut subtract = |column: usize, wrench: &Wrench| {
-        let mut entry = |row: usize, value: f64| {
-            if row != HELD && column != HELD {
-                matrix[row * stride + column] -= value;
-                matrix[column * stride + row] -= value;
-            }
-        };
-        for k in 0..3 {
-            entry(rows_a[k], wrench.moment[k]);
-            entry(rows_a[3 + k], wrench.force[k]);
+    let (path_b, screws_b) = (ws.dynamics[vb].path(lb), &ws.kin[vb].screws);
+    let mut subtract = |row: usize, seen: &Wrench| {
+        let own = &mut matrix[row * stride..][..stride];
+        subtract_base(own, rows_b, seen);
+        for moves in path_b {
+            own[rows_b[6 + moves.coordinate as usize]] -= screws_b[moves.column as usize].dot(seen);
         }
-        for_path(&model.vehicles[va].tree, &ws.kin[va], la, |k, screw| entry(rows_a[k], screw.dot(wrench)));
     };
-    for (l, column) in rows_b.iter().take(6).enumerate() {
-        subtract(*column, &column_of(coupling, l));
+    for (k, row) in rows_a.iter().enumerate().take(6).filter(|(_, r)| **r != HELD) {
+        subtract(*row, &row_of(coupling, k));
     }
-    for_path(&model.vehicles[vb].tree, &ws.kin[vb], lb, |l, screw| subtract(rows_b[l], &coupling.mul(screw)));
-}
-
-/// What a unit of the base's freedom `k` gives.
-fn column_of(matrix: &SpatialMatrix, k: usize) -> Wrench {
-    let column = |m: &spatial::Mat3| m.column(k % 3).into_owned();
-    if k < 3 {
-        Wrench::new(column(&matrix.ma), column(&matrix.fa))
-    } else {
-        Wrench::new(column(&matrix.ml), column(&matrix.fl))
+    for moves in ws.dynamics[va].path(la) {
+        let screw = &ws.kin[va].screws[moves.column as usize];
+        subtract(rows_a[6 + moves.coordinate as usize], &coupling.tr_mul(screw));
     }
 }
 
-/// Visits the joint freedoms that move a body, with their screws, from the tip inwards.
-fn for_path(tree: &Tree, kin: &Kinematics, body: usize, mut visit: impl FnMut(usize, &Twist)) {
-    let mut at = body;
-    while at != 0 {
-        let joint = &tree.joints[at - 1];
-        for k in 0..joint.width {
-            visit(6 + joint.v_index + k, &kin.screws[joint.column + k]);
+/// The six numbers of a wrench, in the order of a base's freedoms.
+#[inline]
+fn numbers(wrench: &Wrench) -> [f64; 6] {
+    let (m, f) = (&wrench.moment, &wrench.force);
+    [m.x, m.y, m.z, f.x, f.y, f.z]
+}
+
+/// Subtracts the six numbers of a wrench from a row, in the columns of a base's freedoms.
+#[inline]
+fn subtract_base(row: &mut [f64], columns: &[usize], seen: &Wrench) {
+    let (numbers, first) = (numbers(seen), columns[0]);
+    // Of a base that is free the columns follow on each other.
+    if first != HELD && columns[5] == first + 5 {
+        row[first..first + 6].iter_mut().zip(numbers).for_each(|(x, number)| *x -= number);
+        return;
+    }
+    for (column, number) in columns.iter().zip(numbers).filter(|(c, _)| **c != HELD) {
+        row[*column] -= number;
+    }
+}
+
+/// Both bodies are of one vehicle: both halves may land on one entry.
+fn add_within(model: &Model, ws: &mut Workspace, [a, b]: [usize; 2], coupling: &SpatialMatrix) {
+    let ((vehicle, la), (_, lb)) = (model.owners[a], model.owners[b]);
+    let islands = &mut ws.islands;
+    let group = islands.group[vehicle];
+    let (at, stride) = (islands.start[group], padded(islands.size[group]));
+    let (rows, matrix) = (&islands.rows[vehicle], &mut islands.matrix[at..]);
+    let (dynamics, screws) = (&ws.dynamics[vehicle], &ws.kin[vehicle].screws);
+    let mut subtract = |row: usize, seen: &Wrench| {
+        let mut entry = |column: usize, value: f64| {
+            let entry = &mut matrix[row.min(column) * stride + row.max(column)];
+            *entry -= value;
+            *entry -= if row == column { value } else { 0.0 };
+        };
+        for (column, value) in rows.iter().zip(numbers(seen)).filter(|(c, _)| **c != HELD) {
+            entry(*column, value);
         }
-        at = tree.bodies[at].parent;
+        for moves in dynamics.path(lb) {
+            entry(rows[6 + moves.coordinate as usize], screws[moves.column as usize].dot(seen));
+        }
+    };
+    for (k, row) in rows.iter().enumerate().take(6).filter(|(_, r)| **r != HELD) {
+        subtract(*row, &row_of(coupling, k));
     }
+    for moves in dynamics.path(la) {
+        subtract(rows[6 + moves.coordinate as usize], &coupling.tr_mul(&screws[moves.column as usize]));
+    }
+}
+
+/// What acts on the base's freedom `k` for a unit of each of the other's.
+fn row_of(matrix: &SpatialMatrix, k: usize) -> Wrench {
+    let row = |m: &Mat3| m.row(k % 3).transpose();
+    if k < 3 { Wrench::new(row(&matrix.ma), row(&matrix.ml)) } else { Wrench::new(row(&matrix.fa), row(&matrix.fl)) }
 }
 
 /// Joint accelerations of the present state under forces that do not answer to gains, into `v_gain`: bases go by their momentum, and what has
@@ -282,27 +335,26 @@ fn write_rhs(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
     let tau = &mut ws.tau[vehicle.v_range()];
     let base = ws.dynamics[i].collect(&vehicle.tree, &ws.kin[i], tau);
     let islands = &mut ws.islands;
-    let rhs = &mut islands.rhs[islands.group[i]];
-    for (k, &row) in islands.rows[i].iter().enumerate().filter(|(_, r)| **r != HELD) {
-        rhs[row] = match k {
-            0..3 => -h * base.moment[k],
-            3..6 => -h * base.force[k - 3],
-            _ => h * (ws.coordinate_lines[vehicle.v0 + k - 6].0 - tau[k - 6]),
-        };
+    let (rhs, rows) = (&mut islands.rhs[islands.group[i]], &islands.rows[i]);
+    for (&row, number) in rows.iter().zip(numbers(&base)).filter(|(row, _)| **row != HELD) {
+        rhs[row] = -h * number;
+    }
+    let range = vehicle.v_range();
+    for ((&row, line), tau) in rows[6..].iter().zip(&ws.coordinate_lines[range.clone()]).zip(&ws.tau[range]) {
+        rhs[row] = h * (line.0 - tau);
     }
 }
 
 fn read_gains(model: &Model, ws: &mut Workspace, i: usize) {
     let vehicle = &model.vehicles[i];
-    let islands = &ws.islands;
-    let rhs = &islands.rhs[islands.group[i]];
-    let gain = |k: usize| if islands.rows[i][k] == HELD { 0.0 } else { rhs[islands.rows[i][k]] };
+    let (rhs, rows) = (&ws.islands.rhs[ws.islands.group[i]], &ws.islands.rows[i]);
+    let gain = |k: usize| if rows[k] == HELD { 0.0 } else { rhs[rows[k]] };
     let mut base = Twist::new(Vec3::new(gain(0), gain(1), gain(2)), Vec3::new(gain(3), gain(4), gain(5)));
     if vehicle.base.is_held() {
         base = ws.drive_gain[i];
     }
-    for k in 0..vehicle.tree.nv {
-        ws.v_gain[vehicle.v0 + k] = gain(6 + k);
+    for (v, &row) in ws.v_gain[vehicle.v_range()].iter_mut().zip(&rows[6..]) {
+        *v = rhs[row];
     }
     ws.base_gain[i] = base;
     ws.dvel[vehicle.body0] = base;
@@ -315,55 +367,70 @@ fn read_gains(model: &Model, ws: &mut Workspace, i: usize) {
     }
 }
 
-/// Columns that are summed in registers at a time; rows are padded to a multiple.
+/// Columns that are summed in registers at a time; rows are padded to a multiple of the fewest.
 const LANES: usize = 8;
+const WIDER: usize = 2 * LANES;
+const WIDEST: usize = 3 * LANES;
 
 /// Length of a padded row.
 fn padded(n: usize) -> usize {
     n.next_multiple_of(LANES)
 }
 
-/// A = UᵀU in place, upper triangle, `n` rows of `padded(n)`; a row's columns are summed in registers over all rows above.
+/// A = WᵀP⁻¹W in place: W upper triangular, P its diagonal of pivots, of which the inverse is left there; `n` rows of
+/// `padded(n)`. (Of UᵀU, U = P^−½ W: here no root stands between a row and the next.)
 fn cholesky(a: &mut [f64], n: usize) -> bool {
     let stride = padded(n);
     for k in 0..n {
         let (above, rest) = a.split_at_mut(k * stride);
         let row = &mut rest[..stride];
-        for (b, x) in row.as_chunks_mut::<LANES>().0.iter_mut().enumerate().skip(k / LANES) {
-            let mut sum = *x;
-            for u in above.chunks_exact(stride) {
-                let factor = u[k];
-                for (s, y) in sum.iter_mut().zip(&u[b * LANES..(b + 1) * LANES]) {
-                    *s -= factor * y;
-                }
-            }
-            *x = sum;
+        let mut at = k / LANES * LANES;
+        while at < stride {
+            at += match stride - at {
+                LANES => subtract_rows::<LANES>(above, row, k, at),
+                WIDER => subtract_rows::<WIDER>(above, row, k, at),
+                _ => subtract_rows::<WIDEST>(above, row, k, at),
+            };
         }
         let pivot = row[k];
         if pivot.is_nan() || pivot <= 0.0 {
             return false;
         }
-        let inverse = 1.0 / pivot.sqrt();
-        row[k / LANES * LANES..].iter_mut().for_each(|x| *x *= inverse);
+        row[k] = 1.0 / pivot;
     }
     true
 }
 
-/// x with UᵀU x = b, in place.
+/// Takes the rows above off W columns of row `k` from `at`, in registers over all rows; returns W.
+#[inline]
+fn subtract_rows<const W: usize>(above: &[f64], row: &mut [f64], k: usize, at: usize) -> usize {
+    let stride = row.len();
+    let Some(own) = row[at..].first_chunk_mut::<W>() else { return W };
+    let mut sum = *own;
+    for (i, u) in above.chunks_exact(stride).enumerate() {
+        let (factor, Some(y)) = (u[i] * u[k], u[at..].first_chunk::<W>()) else { break };
+        for (s, y) in sum.iter_mut().zip(y) {
+            *s -= factor * y;
+        }
+    }
+    *own = sum;
+    W
+}
+
+/// x with WᵀP⁻¹W x = b, in place, from what [`cholesky`] left.
 fn back_substitute(u: &[f64], b: &mut [f64]) {
     let (n, stride) = (b.len(), padded(b.len()));
     for k in 0..n {
-        b[k] /= u[k * stride + k];
-        let value = b[k];
-        for i in k + 1..n {
-            b[i] -= u[k * stride + i] * value;
-        }
+        let row = &u[k * stride..][..n];
+        let (known, rest) = b.split_at_mut(k + 1);
+        let x = known[k] * row[k];
+        rest.iter_mut().zip(&row[k + 1..]).for_each(|(b, u)| *b -= u * x);
     }
     for k in (0..n).rev() {
-        let mut value = b[k];
-        for i in k + 1..n {
-            value -= u[k * stride + i] * b[i];
-        }
-        b[k] = value / u[k * stride + k];
+        let row = &u[k * stride..][..n];
+        let (open, known) = b.split_at_mut(k + 1);
+        // What was found last is taken last: a processor sums the rest meanwhile.
+        let value = known.iter().zip(&row[k + 1..]).rev().fold(open[k], |value, (b, u)| value - u * b);
+        open[k] = value * row[k];
     }
 }

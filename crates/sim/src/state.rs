@@ -49,8 +49,11 @@ pub struct State {
     pub controller: Vec<f64>,
     /// The commands that act at present.
     pub commands: Vec<crate::Command>,
-    /// What came from outside since the start.
+    /// What came from outside since the start, and what became of it.
     pub account: Account,
+    /// Work since the start of every actuator, drive and effect, J, in the model's order: see [`crate::World::works`].
+    #[serde(default)]
+    pub works: Vec<f64>,
     /// Work counters since the start.
     pub work: Work,
 }
@@ -83,35 +86,43 @@ pub struct ContactMemory {
     pub rest: f64,
     /// The point in B's body frame, m: identity of last resort.
     pub point_b: Vec3,
+    /// Share of the pair's law that acts at the point.
+    #[serde(default = "whole")]
+    pub weight: f64,
 }
 
-/// Sums over the run of what crosses the system's border, and of what the laws dissipate.
+/// The share of a point that is not one of a bed's samples.
+fn whole() -> f64 {
+    1.0
+}
+
+/// Sums over the run of what crosses the system's border, and of what the laws dissipate. Works are efforts times the
+/// displacements that were made; losses are what each law says of itself, never less than nothing but for its rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Account {
     /// Impulse of external forces on all vehicles, about W's origin, N·s and N·m·s.
     pub impulse: Wrench,
-    /// Work of gravity, tides and thrusters, J.
-    pub external_work: f64,
-    /// Work of joint actuators, J.
-    pub actuator_work: f64,
-    /// Work of joint damping, dry friction and stops, J (negative: taken out).
-    pub passive_joint_work: f64,
+    /// Work of gravity and tides, J.
+    pub environment_work: f64,
     /// Work of contact forces, J (negative: stored or dissipated).
     pub contact_work: f64,
-    /// Work of mechanisms, J (negative: stored or dissipated); that of a pull-in's motor is with the actuators.
-    #[serde(default)]
+    /// What contact forces gave to motion, J: at the mean of the velocities before and after each step. It differs from their work by
+    /// what the integrator took there.
+    pub contact_to_motion: f64,
+    /// What went into contacts, J: the parts of that work, step by step and point by point, that contacts took.
+    pub contact_intake: f64,
+    /// What contacts have dissipated, J: dampers, friction, and bristles that were cut off when their points parted.
+    pub contact_loss: f64,
+    /// What joints have dissipated, J: damping, dry friction, stops.
+    pub joint_loss: f64,
+    /// Work of mechanisms, J (negative: stored or dissipated); with that of a pull-in's motor.
     pub mechanism_work: f64,
     /// What mechanisms have dissipated by their laws, J; with what a latch had stored when it let go.
-    #[serde(default)]
     pub mechanism_loss: f64,
-    /// Work of prescribed motions, J; their impulse is with the external ones.
-    #[serde(default)]
-    pub drive_work: f64,
-    /// Work of effects on joints, J (negative: stored or dissipated); that on bodies is with the external work.
-    #[serde(default)]
-    pub effect_work: f64,
-    /// What the dampers of parts inside bodies have dissipated, J.
-    #[serde(default)]
+    /// Work of the motors that pull latches in, J.
+    pub pull_in_work: f64,
+    /// What the dampers of parts inside bodies have dissipated, J; it stands in those effects' works too.
     pub effect_loss: f64,
 }
 
@@ -150,6 +161,7 @@ impl State {
             controller: Vec::new(),
             commands: vec![crate::Command::default(); model.actuators.len()],
             account: Account::default(),
+            works: vec![0.0; model.n_works()],
             work: Work::default(),
         }
     }
@@ -179,6 +191,7 @@ impl State {
         self.pending.clone_from(&other.pending);
         self.controller.clone_from(&other.controller);
         self.commands.clone_from(&other.commands);
+        self.works.clone_from(&other.works);
         (self.account, self.work) = (other.account, other.work);
     }
 }
@@ -187,14 +200,15 @@ impl Account {
     /// Adds `k` times another account.
     pub(crate) fn add_scaled(&mut self, other: &Self, k: f64) {
         self.impulse += other.impulse * k;
-        self.external_work += other.external_work * k;
-        self.actuator_work += other.actuator_work * k;
-        self.passive_joint_work += other.passive_joint_work * k;
+        self.environment_work += other.environment_work * k;
         self.contact_work += other.contact_work * k;
+        self.contact_to_motion += other.contact_to_motion * k;
+        self.contact_intake += other.contact_intake * k;
+        self.contact_loss += other.contact_loss * k;
+        self.joint_loss += other.joint_loss * k;
         self.mechanism_work += other.mechanism_work * k;
         self.mechanism_loss += other.mechanism_loss * k;
-        self.drive_work += other.drive_work * k;
-        self.effect_work += other.effect_work * k;
+        self.pull_in_work += other.pull_in_work * k;
         self.effect_loss += other.effect_loss * k;
     }
 }

@@ -11,13 +11,15 @@
 //! Derivation, costs and the traps: crate documentation.
 
 use crate::actuator::{ActuatorKind, CoordinatePoint, calc_thrust};
-use crate::contacts::{Outcome, Place, Touch, commit_bristles, find_touches};
+use crate::books::{self, Thrust};
+use crate::contacts::{Answer, Place, Touch, commit_bristles, find_touches};
 use crate::drive;
 use crate::effect::{self, Acting};
 use crate::mechanism;
 use crate::model::{Base, Model};
 use crate::pivots;
 use crate::solve;
+use crate::speed_limit;
 use crate::state::State;
 use crate::workspace::{Workspace, world_wrench};
 use multibody::{Accelerations, Kinematics};
@@ -36,7 +38,7 @@ const LAW_TOLERANCE: f64 = 1e-3;
 /// Force (N or N·m) below which a difference is round-off and nobody's business.
 const FORCE_FLOOR: f64 = 1e-10;
 /// Most solves in a step.
-const MAX_SOLVES: u32 = 8;
+pub(crate) const MAX_SOLVES: u32 = 8;
 /// Largest (h ω)² at which the midpoint rule resolves a contact; beyond it the stiff form takes over.
 const RESOLVED: f64 = 0.1;
 
@@ -44,6 +46,7 @@ const RESOLVED: f64 = 0.1;
 pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
     let h = ws.step;
     ws.since = None;
+    ws.gain_share = if scheme == Scheme::ImplicitMidpoint { 0.5 } else { 1.0 };
     begin(model, state, ws);
     drive::begin(model, state, ws, h);
     if scheme == Scheme::ImplicitMidpoint {
@@ -65,8 +68,9 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
         _ => drift(model, state, ws, h),
     }
     drive::place(model, state, ws.end);
-    ws.update_positions(model, state);
-    place_centres(model, state, ws, scheme);
+    place_vehicles(model, state, ws, scheme);
+    books::add_coordinates(model, state, ws);
+    books::add_cut_off(model, state, ws);
     finish(model, state, ws);
     drive::add_step(model, state, ws);
     pivots::commit(ws);
@@ -74,28 +78,34 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace, scheme:
     mechanism::commit(model, state, ws);
 }
 
-/// Shifts every base so that its vehicle's centre of mass moves by h p/m exactly, with the momentum that moves it.
+/// Kinematics and frames of the drifted state, every centre of mass in its place.
+fn place_vehicles(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
+    for (i, vehicle) in model.vehicles.iter().enumerate() {
+        ws.update_screws(model, state, i);
+        if !vehicle.base.is_held() {
+            place_centre(model, state, ws, (i, scheme));
+        }
+        ws.update_frames(model, i);
+    }
+}
+
+/// Shifts a base so that its vehicle's centre of mass moves by h p/m exactly, with the momentum that moves it.
 ///
 /// The drift of the base origin is off by O(h²), and L − x × p turns that into spin: a body flying at 1 m/s and turning at
 /// 1 rad/s would be pushed aside by ½ mm/s, and its rotation would depend on the frame that one looks from.
-fn place_centres(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Scheme) {
-    for (i, vehicle) in model.vehicles.iter().enumerate().filter(|(_, v)| !v.base.is_held()) {
-        let start = &ws.momentum_start[i];
-        let mean = match scheme {
-            Scheme::ImplicitMidpoint => 0.5 * (start + own_momentum(model, state, ws, i)),
-            _ => own_momentum(model, state, ws, i),
-        };
-        let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
-        let kin = &mut ws.kin[i];
-        let off = ws.centre_start[i] + mean * (ws.step / mass) - (kin.anchor + first_moment / mass);
-        let mask = vehicle.base.mask();
-        let shift = Vec3::from_fn(|k, _| if mask[3 + k] { off[k] } else { 0.0 });
-        state.bases[i].translation.vector += shift;
-        kin.anchor = state.bases[i].translation.vector;
-        for body in 0..vehicle.tree.bodies.len() {
-            ws.frames[vehicle.body0 + body] = kin.frame(body);
-        }
-    }
+fn place_centre(model: &Model, state: &mut State, ws: &mut Workspace, (i, scheme): (usize, Scheme)) {
+    let start = &ws.momentum_start[i];
+    let mean = match scheme {
+        Scheme::ImplicitMidpoint => 0.5 * (start + own_momentum(model, state, ws, i)),
+        _ => own_momentum(model, state, ws, i),
+    };
+    let (mass, first_moment) = calc_first_moment(&ws.kin[i]);
+    let kin = &mut ws.kin[i];
+    let off = ws.centre_start[i] + mean * (ws.step / mass) - (kin.anchor + first_moment / mass);
+    let mask = model.vehicles[i].base.mask();
+    let shift = Vec3::from_fn(|k, _| if mask[3 + k] { off[k] } else { 0.0 });
+    state.bases[i].translation.vector += shift;
+    kin.anchor = state.bases[i].translation.vector;
 }
 
 /// Linear momentum of a vehicle's bodies, without the parts that effects put inside them.
@@ -113,6 +123,7 @@ fn calc_first_moment(kin: &Kinematics) -> (f64, Vec3) {
 pub(crate) fn begin(model: &Model, state: &State, ws: &mut Workspace) {
     ws.frames_start.copy_from_slice(&ws.frames);
     ws.q_start.copy_from_slice(&state.q);
+    ws.effects_start.copy_from_slice(&state.effects);
     ws.queries_start = ws.detector.narrow_count();
     for i in 0..model.vehicles.len() {
         ws.base_start[i] = ws.kin[i].vel[0];
@@ -129,7 +140,9 @@ pub(crate) fn finish(model: &Model, state: &mut State, ws: &mut Workspace) {
     state.time = now;
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| c.dry.is_some()) {
         let moved = state.q[coordinate.q_index] - ws.q_start[coordinate.q_index];
-        state.dry[i] = coordinate.advance_dry(state.dry[i], moved, ws.step);
+        let start = state.dry[i];
+        state.dry[i] = coordinate.advance_dry(start, moved, ws.step);
+        state.account.joint_loss += coordinate.calc_dry_loss(start, state.dry[i], moved);
     }
     effect::commit(model, state, ws);
     state.time = ws.end;
@@ -141,8 +154,10 @@ pub(crate) fn finish(model: &Model, state: &mut State, ws: &mut Workspace) {
 pub(crate) fn calc_external(model: &Model, state: &State, ws: &mut Workspace) {
     for (body, &(vehicle, local)) in model.owners.iter().enumerate() {
         let kin = &ws.kin[vehicle];
-        ws.external[body] = model.environment.calc_wrench(state.time, &kin.anchor, &kin.inertia[local]);
+        ws.weights[body] = model.environment.calc_wrench(state.time, &kin.anchor, &kin.inertia[local]);
+        ws.external[body] = ws.weights[body];
     }
+    ws.thrusts.clear();
     let acting = Acting { model, state, step: ws.step, since: ws.since };
     for (index, actuator) in model.actuators.iter().enumerate() {
         if let ActuatorKind::Thruster { body, position, direction, .. } = actuator.kind {
@@ -150,7 +165,9 @@ pub(crate) fn calc_external(model: &Model, state: &State, ws: &mut Workspace) {
             let kin = &ws.kin[vehicle];
             let r = kin.pos[local] + kin.rot[local] * position;
             let force = kin.rot[local] * (calc_thrust(index, &acting) * direction);
-            ws.external[body] += Wrench::from_force_at(force, &r);
+            let wrench = Wrench::from_force_at(force, &r);
+            ws.external[body] += wrench;
+            ws.thrusts.push(Thrust { actuator: index, body, wrench });
         }
     }
     effect::add_wrenches(model, state, ws);
@@ -164,8 +181,7 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
         for k in range.clone() {
             ws.v_mid[k] = state.v[k] + if half_gain { 0.5 * ws.v_gain[k] } else { 0.0 };
         }
-        let motion =
-            Accelerations { base: ws.base_acceleration[i], v: &ws.v_mid[range.clone()], v_dot: &ws.zero[range] };
+        let motion = Accelerations { base: ws.base_acceleration[i], v: &ws.v_mid[range], v_dot: &[] };
         let bodies = vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len();
         ws.dynamics[i].calc_body_wrenches(&vehicle.tree, &ws.kin[i], &motion, &ws.external[bodies.clone()]);
         ws.bias[bodies].copy_from_slice(&ws.dynamics[i].wrench);
@@ -179,6 +195,7 @@ pub(crate) fn calc_bias(model: &Model, state: &State, ws: &mut Workspace, half_g
 fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) {
     let h = ws.step;
     mechanism::place(model, ws, scheme);
+    ws.answers.resize(ws.touches.len(), Answer::default());
     for i in 0..ws.touches.len() {
         let is_stiff = scheme == Scheme::ImplicitMidpoint && is_stiff(model, ws, i);
         let touch = &mut ws.touches[i];
@@ -187,8 +204,9 @@ fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) 
         if is_stiff {
             touch.place = Place { gap_base: touch.gap, s_base: touch.s, beta: h, theta: 1.0, elapsed: h };
         }
-        let u = touch.u;
-        touch.out = touch.eval(law, &u, h);
+        let answer = &mut ws.answers[i];
+        touch.eval(law, touch.u, answer);
+        touch.draw_line(law, answer, h);
         if scheme == Scheme::SemiImplicitEuler {
             touch.out.g = spatial::Mat3::zeros();
             touch.out.line = touch.out.law;
@@ -204,9 +222,11 @@ fn place_laws(model: &Model, state: &State, ws: &mut Workspace, scheme: Scheme) 
             Scheme::SemiImplicitEuler => (0.0, 0.0, q, h * v, h),
         };
         let dry_start = state.dry[i];
-        let point = CoordinatePoint { q_base, moved_base, v_start: v, beta, theta, dry_start, elapsed, from: None };
+        let (from, end, branch) = (None, None, None);
+        let point =
+            CoordinatePoint { q_base, moved_base, v_start: v, beta, theta, dry_start, elapsed, from, end, branch };
         let force = coordinate.eval(&point, v, &Acting { model, state, step: h, since: None });
-        ws.coordinate_points[i] = point;
+        ws.coordinate_points[i] = CoordinatePoint { branch: force.branch, ..point };
         ws.coordinate_forces[i] = force;
         ws.coordinate_lines[i] = (force.effort, force.slope);
     }
@@ -261,7 +281,10 @@ fn solve_laws(model: &Model, state: &mut State, ws: &mut Workspace, scheme: Sche
         state.work.solves += 1;
         state.work.rate_evaluations += 1;
         let first_midpoint_pass = scheme == Scheme::ImplicitMidpoint && pass == 0;
-        converged = scheme == Scheme::SemiImplicitEuler || laws_hold(model, state, ws, h);
+        converged = match scheme {
+            Scheme::SemiImplicitEuler => speed_limit::hold_in_step(model, state, ws),
+            _ => laws_hold(model, state, ws, first_midpoint_pass),
+        };
         must_factor = !converged;
         if first_midpoint_pass {
             recalc_bias_at_midpoint(model, state, ws);
@@ -308,35 +331,51 @@ fn classical_gain(gain: &Twist, base: &Twist, h: f64) -> Twist {
     Twist::new(gain.ang, gain.lin + h * base.ang.cross(&base.lin))
 }
 
-/// Evaluates all laws at the solution; where a line missed, draws the next one. `true` if none did.
-fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, h: f64) -> bool {
+/// Evaluates all laws at the solution; where a line missed, or another pass comes anyway, draws the next ones. `true` if
+/// none did.
+fn laws_hold(model: &Model, state: &State, ws: &mut Workspace, goes_on: bool) -> bool {
+    let h = ws.step;
     let mut check = PairCheck::default();
     for i in 0..ws.touches.len() {
         let gain = relative_gain(model, ws, &ws.touches[i]);
         let touch = &mut ws.touches[i];
         let law = &model.laws[touch.pair as usize];
         let force = touch.out.line - touch.out.g * gain / h;
-        let next = touch.eval(law, &(touch.u + touch.carried + gain), h);
+        touch.eval(law, touch.u + touch.carried + gain, &mut ws.answers[i]);
+        let next = &touch.out;
         let mut miss = (next.law - force).norm();
         if let Some(friction) = law.friction.as_ref().filter(|_| next.pressing[0] != next.normal_force) {
             // A bound of friction that the normal force does not bear out is a miss as well.
             miss = miss.max(friction.highest_level() * (next.pressing[0] - next.normal_force).abs());
         }
         check.add(touch.pair, miss, next.law.norm());
-        touch.out = Outcome { force, ..next };
+        touch.out.force = force;
     }
-    let mut joints_hold = true;
+    let joints_hold = joint_laws_hold(model, state, ws);
+    let pivots_hold = pivots::laws_hold(model, ws);
+    let hold = mechanism::laws_hold(model, ws) && pivots_hold && joints_hold && check.holds();
+    if goes_on || !hold {
+        for (touch, answer) in ws.touches.iter_mut().zip(&ws.answers) {
+            touch.draw_line(&model.laws[touch.pair as usize], answer, h);
+        }
+    }
+    hold
+}
+
+fn joint_laws_hold(model: &Model, state: &State, ws: &mut Workspace) -> bool {
+    let h = ws.step;
+    let mut hold = true;
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
         let (effort, slope) = ws.coordinate_lines[i];
         let v_new = state.v[i] + ws.v_gain[i];
         let on_line = effort - slope * ws.v_gain[i];
         let law = coordinate.eval(&ws.coordinate_points[i], v_new, &Acting { model, state, step: h, since: None });
-        joints_hold &= (law.effort - on_line).abs() <= LAW_TOLERANCE * law.effort.abs() + FORCE_FLOOR;
+        hold &= (law.effort - on_line).abs() <= LAW_TOLERANCE * law.effort.abs() + FORCE_FLOOR;
         ws.coordinate_forces[i] = crate::actuator::CoordinateForce { effort: on_line, ..law };
         ws.coordinate_lines[i] = (law.effort + law.slope * ws.v_gain[i], law.slope);
+        ws.coordinate_points[i].branch = law.branch;
     }
-    let pivots_hold = pivots::laws_hold(model, ws);
-    mechanism::laws_hold(model, ws) && pivots_hold && joints_hold && check.holds()
+    hold
 }
 
 /// Compares lines with laws, pair by pair: a miss counts against the largest force of its own pair, so that a press
@@ -372,41 +411,28 @@ fn relative_gain(model: &Model, ws: &Workspace, touch: &Touch) -> Vec3 {
     at(touch.body_b) - at(touch.body_a)
 }
 
-/// Momentum and accounts: every contact gives the same numbers to both sides. Works are taken at the mean velocity of the
-/// step, so that they sum to the change of kinetic energy; what an implicit step damps is booked where it damps it.
+/// Momentum: every contact gives the same numbers to both sides; and what [`books`] keeps of it.
 pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: f64) {
     for touch in &ws.touches {
         let impulse = h * touch.out.force;
         let moment = touch.point.cross(&impulse);
-        let error = h * model.one_sided_force;
         add_impulse(model, state, ws, touch.body_a, &touch.point, &Wrench::new(-moment, -impulse));
-        let on_b = Wrench::new(moment + touch.point.cross(&error), impulse + error);
-        add_impulse(model, state, ws, touch.body_b, &touch.point, &on_b);
-        let u_mean = touch.u + 0.5 * relative_gain(model, ws, touch);
-        state.account.contact_work += impulse.dot(&u_mean);
+        add_impulse(model, state, ws, touch.body_b, &touch.point, &Wrench::new(moment, impulse));
+        let gain = relative_gain(model, ws, touch);
+        books::add_touch(model, state, ws, touch, &gain);
     }
     mechanism::add_impulses(model, state, ws, h);
     pivots::add_impulses(model, state, ws, h);
-    for (i, _) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {
-        let force = &ws.coordinate_forces[i];
-        let moved = h * (state.v[i] + 0.5 * ws.v_gain[i]);
-        let motor_moved = force.motor_rate.map_or(moved, |rate| h * rate);
-        let by_effects = (force.by_effects + force.through) * moved - force.driven * motor_moved;
-        state.account.actuator_work += force.driven * motor_moved;
-        state.account.passive_joint_work += (force.effort - force.through - force.by_effects) * moved;
-        state.account.effect_work += by_effects;
-    }
     effect::add_impulses(model, state, ws, h);
-    for (body, &(vehicle, local)) in model.owners.iter().enumerate() {
+    books::add_external(model, state, ws, h);
+    for (body, &(vehicle, _)) in model.owners.iter().enumerate() {
         let external = ws.external[body];
         if external == Wrench::default() {
             continue;
         }
-        let (owner, kin) = (&model.vehicles[vehicle], &ws.kin[vehicle]);
-        let impulse = world_wrench(owner, &kin.anchor, &(external * h));
+        let impulse = world_wrench(&model.vehicles[vehicle], &ws.kin[vehicle].anchor, &(external * h));
         state.momentum[vehicle] += impulse;
         state.account.impulse += impulse;
-        state.account.external_work += h * (kin.vel[local] + ws.dvel[body] * 0.5).dot(&external);
     }
 }
 

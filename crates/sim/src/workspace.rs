@@ -1,7 +1,7 @@
 //! Scratch of a step: sized once from the model, so that a step allocates nothing.
 
 use crate::actuator::{CoordinateForce, CoordinatePoint};
-use crate::contacts::Touch;
+use crate::contacts::{Answer, Touch};
 use crate::effect::calc_carried;
 use crate::model::{Base, Model, Vehicle};
 use crate::state::State;
@@ -15,6 +15,8 @@ pub(crate) struct Workspace {
     /// Length of the present step, s, and the time at its end, s.
     pub step: f64,
     pub end: f64,
+    /// Share of a step's gains in the velocity that displaces: 1 for the Euler schemes, ½ at mid-step, 0 in a stage.
+    pub gain_share: f64,
     /// Time since the step's start of an explicit stage, s.
     pub since: Option<f64>,
     pub kin: Vec<Kinematics>,
@@ -26,13 +28,19 @@ pub(crate) struct Workspace {
     pub points: Vec<ContactPoint>,
     pub reach: Vec<f64>,
     pub touches: Vec<Touch>,
+    /// What the touches' laws answered last, in their order.
+    pub answers: Vec<Answer>,
     pub couplings: Vec<crate::mechanism::Coupling>,
     pub pivots: Vec<crate::pivots::PivotTouch>,
     /// Per body, about its vehicle's anchor: forces from outside, then what motion takes beyond them.
     pub external: Vec<Wrench>,
+    /// Of these, gravity and tides; and the thrusters' shares.
+    pub weights: Vec<Wrench>,
+    pub thrusts: Vec<crate::books::Thrust>,
     pub bias: Vec<Wrench>,
     pub contact: Vec<Wrench>,
-    pub extra: Vec<SpatialMatrix>,
+    /// What contacts and mechanisms add to the inertia of a body.
+    pub extra: Vec<Option<SpatialMatrix>>,
     /// Change of the bodies' twists in the step; the world's is the last and zero.
     pub dvel: Vec<Twist>,
     pub base_start: Vec<Twist>,
@@ -45,6 +53,7 @@ pub(crate) struct Workspace {
     pub drive_gain: Vec<Twist>,
     pub drive_start: Vec<crate::drive::DriveStart>,
     pub q_start: Vec<f64>,
+    pub effects_start: Vec<f64>,
     pub queries_start: u64,
     pub v_gain: Vec<f64>,
     /// Joints that are held in this step, with their rates before, and the largest share of what they bear that would move one.
@@ -52,7 +61,6 @@ pub(crate) struct Workspace {
     pub unrest: f64,
     pub v_mid: Vec<f64>,
     pub tau: Vec<f64>,
-    pub zero: Vec<f64>,
     pub displacement: Vec<f64>,
     pub coordinate_points: Vec<CoordinatePoint>,
     pub coordinate_forces: Vec<CoordinateForce>,
@@ -74,6 +82,7 @@ impl Workspace {
         Self {
             step: model.step,
             end: 0.0,
+            gain_share: 0.0,
             since: None,
             kin: model.vehicles.iter().map(|v| Kinematics::new(&v.tree)).collect(),
             dynamics: model.vehicles.iter().map(|v| Dynamics::new(&v.tree)).collect(),
@@ -83,17 +92,21 @@ impl Workspace {
             points: Vec::new(),
             reach: vec![0.0; bodies],
             touches: Vec::new(),
+            answers: Vec::new(),
             couplings: Vec::with_capacity(model.mechanisms.len()),
             pivots: Vec::new(),
             external: vec![Wrench::default(); bodies],
+            weights: vec![Wrench::default(); model.owners.len()],
+            thrusts: Vec::with_capacity(model.actuators.len()),
             bias: vec![Wrench::default(); bodies],
             contact: vec![Wrench::default(); bodies],
-            extra: vec![SpatialMatrix::default(); bodies],
+            extra: vec![None; bodies],
             dvel: vec![Twist::default(); bodies],
             base_start: vec![Twist::default(); model.vehicles.len()],
             momentum_start: vec![Vec3::zeros(); model.vehicles.len()],
             centre_start: vec![Vec3::zeros(); model.vehicles.len()],
             q_start: vec![0.0; model.nq()],
+            effects_start: vec![0.0; model.effects.n_memory()],
             queries_start: 0,
             base_gain: vec![Twist::default(); model.vehicles.len()],
             base_acceleration: vec![Twist::default(); model.vehicles.len()],
@@ -104,7 +117,6 @@ impl Workspace {
             unrest: 0.0,
             v_mid: vec![0.0; nv],
             tau: vec![0.0; nv],
-            zero: vec![0.0; nv],
             displacement: vec![0.0; nv],
             coordinate_points: vec![point; nv],
             coordinate_forces: vec![CoordinateForce::default(); nv],
@@ -120,11 +132,24 @@ impl Workspace {
 
     /// Frames, screws and inertias at the state's poses.
     pub fn update_positions(&mut self, model: &Model, state: &State) {
-        for (i, vehicle) in model.vehicles.iter().enumerate() {
-            self.kin[i].update_positions(&vehicle.tree, &state.bases[i], &state.q[vehicle.q_range()]);
-            for body in 0..vehicle.tree.bodies.len() {
-                self.frames[vehicle.body0 + body] = self.kin[i].frame(body);
-            }
+        for i in 0..model.vehicles.len() {
+            self.update_screws(model, state, i);
+            self.update_frames(model, i);
+        }
+    }
+
+    /// Screws and inertias of a vehicle at its pose.
+    pub fn update_screws(&mut self, model: &Model, state: &State, i: usize) {
+        let vehicle = &model.vehicles[i];
+        self.kin[i].update_positions(&vehicle.tree, &state.bases[i], &state.q[vehicle.q_range()]);
+    }
+
+    /// Frames of a vehicle's bodies in W, from its kinematics.
+    pub fn update_frames(&mut self, model: &Model, i: usize) {
+        let vehicle = &model.vehicles[i];
+        let frames = &mut self.frames[vehicle.body0..vehicle.body0 + vehicle.tree.bodies.len()];
+        for (body, frame) in frames.iter_mut().enumerate() {
+            *frame = self.kin[i].frame(body);
         }
     }
 
@@ -155,10 +180,10 @@ impl Workspace {
 
     /// Twist of a global body about the point at `point` (W), W axes; zero for the world.
     #[inline]
-    pub fn vel_at(&self, model: &Model, body: usize, point: &Vec3) -> Vec3 {
-        let Some(&(vehicle, local)) = model.owners.get(body) else { return Vec3::zeros() };
+    pub fn twist_at(&self, model: &Model, body: usize, point: &Vec3) -> Twist {
+        let Some(&(vehicle, local)) = model.owners.get(body) else { return Twist::default() };
         let kin = &self.kin[vehicle];
-        kin.vel[local].at(&(point - kin.anchor))
+        kin.vel[local].about(&(point - kin.anchor))
     }
 }
 

@@ -5,10 +5,11 @@ use crate::effect;
 use crate::error::StepError;
 use crate::mechanism::{self, MechanismKind, MechanismMemory, MechanismReport};
 use crate::model::{Integrator, Model};
+use crate::speed_limit;
 use crate::state::{ContactMemory, State};
 use crate::step::{self, Scheme};
 use crate::workspace::{Workspace, calc_world_momentum};
-use crate::{Command, rk4};
+use crate::{Command, Works, rk4};
 use friction::Friction;
 use multibody::Kinematics;
 use spatial::{Frame, Twist, Vec3, Wrench};
@@ -115,6 +116,7 @@ impl World {
     pub fn refresh(&mut self) {
         if !self.is_fresh {
             let now = self.state.time;
+            self.state.works.resize(self.model.n_works(), 0.0);
             drive::place(&self.model, &mut self.state, now);
             self.ws.update_positions(&self.model, &self.state);
             self.ws.update_velocities(&self.model, &self.state);
@@ -299,6 +301,11 @@ impl World {
         self.model.calc_motor_side(&self.state, coordinate)
     }
 
+    /// Whether the motors of a coordinate have reached the speed at which they stop pushing.
+    pub fn is_at_speed_limit(&self, coordinate: usize) -> bool {
+        speed_limit::is_reached(self.model.coordinates[coordinate].speed_limit, self.motor_side(coordinate).1)
+    }
+
     fn make_step(&mut self) -> Result<(), StepError> {
         let (model, state, ws) = (&*self.model, &mut self.state, &mut self.ws);
         match model.integrator {
@@ -312,7 +319,9 @@ impl World {
 
     fn check_finite(&mut self) -> Result<(), StepError> {
         for (i, vehicle) in self.model.vehicles.iter().enumerate() {
-            for (local, twist) in self.ws.kin[i].vel.iter().enumerate() {
+            // (a + b)² ≤ 2 (a² + b²) says without a root that all is well; NaN does not pass.
+            let is_calm = |t: &Twist| 2.0 * (t.lin.norm_squared() + t.ang.norm_squared()) <= MAX_SPEED * MAX_SPEED;
+            for (local, twist) in self.ws.kin[i].vel.iter().enumerate().filter(|(_, t)| !is_calm(t)) {
                 let size = twist.lin.norm() + twist.ang.norm();
                 if size.is_nan() || size > MAX_SPEED {
                     let time = self.state.time;
@@ -357,6 +366,13 @@ impl World {
     /// Twist of a vehicle's link about its own origin, W axes.
     pub fn link_twist(&self, vehicle: usize, link: usize) -> Twist {
         self.ws.kin[vehicle].link_twist(&self.model.vehicles[vehicle].tree, link)
+    }
+
+    /// Work since the start of every actuator, drive and effect, J.
+    pub fn works(&self) -> Works<'_> {
+        let (actuators, rest) = self.state.works.split_at(self.model.actuators.len());
+        let (drives, effects) = rest.split_at(self.model.drives.len());
+        Works { actuators, drives, effects }
     }
 
     /// Effort that acted on a coordinate in the last step, N·m or N (actuators and passive laws).
@@ -423,6 +439,7 @@ impl World {
                 turn_w: Vec3::zeros(),
                 rest,
                 point_b: touch.local_b,
+                weight: touch.weight,
             });
         }
         self.state.bristles.sort_by_key(|m| (m.pair, m.feature));

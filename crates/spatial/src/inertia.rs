@@ -71,11 +71,16 @@ impl Inertia {
     #[inline]
     pub fn transformed(&self, rot: &Mat3, pos: &Vec3) -> Self {
         let mc = rot * self.mc;
-        // I_O' = R I Rᵀ + (2 r·c − …) with r = pos: I + m(r²1 − rrᵀ) + 2(r·mc)1 − r mcᵀ − mc rᵀ.
-        let turned = rot * self.rot * rot.transpose();
+        // I_O' = R I Rᵀ + (2 r·c − …) with r = pos: I + m(r²1 − rrᵀ) + 2(r·mc)1 − r mcᵀ − mc rᵀ; of a symmetric sum the half.
+        let (turned, moved) = (rot * self.rot, self.mass * pos + mc);
         let diagonal = self.mass * pos.norm_squared() + 2.0 * pos.dot(&mc);
-        let outer = pos * (self.mass * pos + mc).transpose() + mc * pos.transpose();
-        Self { mass: self.mass, mc: mc + self.mass * pos, rot: turned - outer + Mat3::from_diagonal_element(diagonal) }
+        let entry = |i: usize, j: usize| {
+            let own = turned[(i, 0)] * rot[(j, 0)] + turned[(i, 1)] * rot[(j, 1)] + turned[(i, 2)] * rot[(j, 2)];
+            own - (pos[i] * moved[j] + mc[i] * pos[j])
+        };
+        let (xy, xz, yz) = (entry(0, 1), entry(0, 2), entry(1, 2));
+        let (xx, yy, zz) = (entry(0, 0) + diagonal, entry(1, 1) + diagonal, entry(2, 2) + diagonal);
+        Self { mass: self.mass, mc: mc + self.mass * pos, rot: Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) }
     }
 
     /// Momentum of the twist about the same point: angular (moment slot) and linear (force slot).
@@ -107,18 +112,24 @@ impl Inertia {
         if mass <= 0.0 {
             return Err(InertiaError::Mass(mass));
         }
-        let mut moments: [f64; 3] = tensor_com.symmetric_eigenvalues().into();
-        moments.sort_by(f64::total_cmp);
+        let moments = sorted_moments(tensor_com);
+        if moments[0] <= 0.0 { Err(InertiaError::NotPositive(moments)) } else { Self::check_triangle(tensor_com) }
+    }
+
+    /// Checks that the two smaller principal moments sum to no less than the largest.
+    pub fn check_triangle(tensor_com: &Mat3) -> Result<(), InertiaError> {
+        let moments = sorted_moments(tensor_com);
         // Files carry six digits: a thin plate, where equality holds, must pass.
         let slack = 1e-5 * moments[2].abs();
-        if moments[0] <= 0.0 {
-            return Err(InertiaError::NotPositive(moments));
-        }
-        if moments[0] + moments[1] < moments[2] - slack {
-            return Err(InertiaError::Triangle(moments));
-        }
-        Ok(())
+        if moments[0] + moments[1] < moments[2] - slack { Err(InertiaError::Triangle(moments)) } else { Ok(()) }
     }
+}
+
+/// Principal moments, ascending.
+fn sorted_moments(tensor: &Mat3) -> [f64; 3] {
+    let mut moments: [f64; 3] = tensor.symmetric_eigenvalues().into();
+    moments.sort_by(f64::total_cmp);
+    moments
 }
 
 /// x with A x = b for a symmetric positive definite A, by Cramer's rule on the adjugate.
@@ -159,13 +170,27 @@ pub struct SpatialMatrix {
 }
 
 impl SpatialMatrix {
-    /// Xᵃᵀ G Xᵇ: what the 3×3 map `g` from the velocity of a point at `r_b` to a force at `r_a` is about the origins.
+    /// Xᵀ G X: what the symmetric 3×3 map `g` from the velocity of a point at `r` to a force there is about the origin.
+    ///
+    ///   v = v_o − [r] ω,  m = [r] f:   (m, f) = ( −[r] G [r]   [r] G )  (ω, v_o)
+    ///                                          (    −G [r]       G  )
     #[inline]
-    pub fn from_point(g: &Mat3, r_a: &Vec3, r_b: &Vec3) -> Self {
-        let (ra, rb) = (skew(r_a), skew(r_b));
-        // v = v_o − [r_b] ω;  m = [r_a] f.
-        let gr = g * rb;
-        Self { ma: -(ra * gr), ml: ra * g, fa: -gr, fl: *g }
+    pub fn from_point(g: &Mat3, r: &Vec3) -> Self {
+        let ml = cross_columns(r, g);
+        let fa = ml.transpose();
+        Self { ma: cross_columns(r, &fa), ml, fa, fl: *g }
+    }
+
+    /// A stiffness between two bodies that is given about B's origin, which is at `d` from A's: with the forces about A's origin
+    /// and the velocities about B's, and with both about A's.
+    #[inline]
+    pub fn about_first(&self, d: &Vec3) -> [Self; 2] {
+        // m_A = m_B + d × f, and v_B = v_A − d × ω.
+        let between =
+            Self { ma: self.ma + cross_columns(d, &self.fa), ml: self.ml + cross_columns(d, &self.fl), ..*self };
+        let turned = |m: &Mat3| cross_columns(d, &m.transpose()).transpose();
+        let own = Self { ma: between.ma + turned(&between.ml), fa: between.fa + turned(&between.fl), ..between };
+        [between, own]
     }
 
     /// Image of a twist.
@@ -173,6 +198,28 @@ impl SpatialMatrix {
     pub fn mul(&self, v: &Twist) -> Wrench {
         Wrench { moment: self.ma * v.ang + self.ml * v.lin, force: self.fa * v.ang + self.fl * v.lin }
     }
+
+    /// The transposed map.
+    pub fn transpose(&self) -> Self {
+        let Self { ma, ml, fa, fl } = self;
+        Self { ma: ma.transpose(), ml: fa.transpose(), fa: ml.transpose(), fl: fl.transpose() }
+    }
+
+    /// Image of a twist under the transposed map.
+    #[inline]
+    pub fn tr_mul(&self, v: &Twist) -> Wrench {
+        Wrench {
+            moment: self.ma.tr_mul(&v.ang) + self.fa.tr_mul(&v.lin),
+            force: self.ml.tr_mul(&v.ang) + self.fl.tr_mul(&v.lin),
+        }
+    }
+}
+
+/// [r] M, a cross product per column.
+#[inline]
+fn cross_columns(r: &Vec3, m: &Mat3) -> Mat3 {
+    let column = |k: usize| r.cross(&Vec3::new(m[(0, k)], m[(1, k)], m[(2, k)]));
+    Mat3::from_columns(&[column(0), column(1), column(2)])
 }
 
 impl From<&Inertia> for SpatialMatrix {
@@ -227,6 +274,23 @@ mod tests {
         let v = Twist::new(Vec3::new(0.3, 0.1, -0.4), Vec3::new(1.0, 0.2, 0.7));
         let (a, b) = (SpatialMatrix::from(&sample()).mul(&v), sample().momentum(&v));
         assert!((a.moment - b.moment).norm() + (a.force - b.force).norm() < ROUND_OFF);
+    }
+
+    /// G acts on the difference of two bodies' velocities at a point: its four blocks give the forces of both about their origins.
+    #[test]
+    fn stiffness_at_a_point_is_moved_to_two_origins() {
+        let g = Mat3::new(3.0, 0.2, -0.1, 0.2, 2.0, 0.4, -0.1, 0.4, 5.0);
+        let (r_a, r_b) = (Vec3::new(0.3, -0.7, 1.1), Vec3::new(-0.5, 0.2, 0.9));
+        let v = Twist::new(Vec3::new(0.3, 0.1, -0.4), Vec3::new(1.0, 0.2, 0.7));
+        let about = |left: &Vec3, right: &Vec3| Wrench::from_force_at(g * v.at(right), left);
+        let bb = SpatialMatrix::from_point(&g, &r_b);
+        let [ab, aa] = bb.about_first(&(r_a - r_b));
+        for (matrix, wrench) in [(aa, about(&r_a, &r_a)), (ab, about(&r_a, &r_b)), (bb, about(&r_b, &r_b))] {
+            let off = matrix.mul(&v) - wrench;
+            assert!(off.moment.norm() + off.force.norm() < ROUND_OFF);
+            let w = Twist::new(Vec3::new(-0.2, 0.6, 0.1), Vec3::new(0.5, -0.9, 0.3));
+            assert!((w.dot(&matrix.mul(&v)) - v.dot(&matrix.tr_mul(&w))).abs() < ROUND_OFF);
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use std::path::Path;
 fuzz_target!(|bytes: &[u8]| {
     let text = String::from_utf8_lossy(bytes);
     match parse_urdf(&text, Path::new("fuzz.urdf"), Path::new("/nonexistent"), &SearchPaths::default()) {
-        Ok(robot) => check(&robot),
+        Ok(loaded) => check(&loaded.robot),
         Err(errors) => assert!(errors.iter().count() > 0 && !errors.to_string().is_empty()),
     }
 });
@@ -24,6 +24,6 @@ fn check(robot: &RobotDescription) {
         assert!(leader.is_none_or(|l| l != i && robot.joints[l].mimic.is_none()));
     }
     for inertial in robot.links.iter().filter_map(|l| l.inertial) {
-        assert!(inertial.mass > 0.0 && inertial.tensor_com.iter().chain(&inertial.com).all(|x| x.is_finite()));
+        assert!(inertial.mass >= 0.0 && inertial.tensor_com.iter().chain(&inertial.com).all(|x| x.is_finite()));
     }
 }

@@ -11,7 +11,7 @@ const METRICS: [(&str, f64, f64); 6] = [
     ("*", 1e-9, 1e-5),
     // Round-off and what is beyond all digits: only its size counts.
     ("momentum_drift_*", 1e-10, 0.0),
-    ("integrator_energy_j", 1e-6, 1e-3),
+    ("numerical_loss*", 1e-6, 1e-3),
     ("creep_*", 1e-9, 1e-3),
     ("held_*", 1e-9, 1e-4),
     // An event may move by a step.

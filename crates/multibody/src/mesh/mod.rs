@@ -25,8 +25,13 @@ const LARGEST_COORDINATE_M: f64 = 1e15;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the sentence beside each variant says what its fields are")]
 pub enum MeshError {
-    #[error("mesh {name} is not found; tried {}; correct the path or add a search path", listed(.tried))]
+    #[error("mesh {name} is not found; tried {}; correct the path", listed(.tried))]
     NotFound { name: String, tried: Vec<PathBuf> },
+    #[error(
+        "package \"{package}\" is not found in {}every folder from {} upwards; name the folder that holds it (`--package-path`, package_paths of a vehicle, ROS_PACKAGE_PATH or AMENT_PREFIX_PATH)",
+        searched(.named), .above.display()
+    )]
+    NoPackage { package: String, named: Vec<PathBuf>, above: PathBuf },
     #[error("mesh {name} has the unknown form {scheme}://; use a path, file:// or package://")]
     UnknownScheme { name: String, scheme: String },
     #[error("mesh {} cannot be read: {reason}", .file.display())]
@@ -46,10 +51,18 @@ pub enum MeshError {
 }
 
 fn listed(tried: &[PathBuf]) -> String {
-    if tried.is_empty() {
-        return "nothing (no search path fits)".into();
-    }
     tried.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ")
+}
+
+fn searched(named: &[PathBuf]) -> String {
+    named.iter().map(|p| format!("{}, ", p.display())).collect()
+}
+
+impl MeshError {
+    /// Whether there is no file at all, as where a URDF was copied without its meshes.
+    pub fn is_missing(&self) -> bool {
+        matches!(self, Self::NotFound { .. } | Self::NoPackage { .. })
+    }
 }
 
 fn at_line(line: &Option<usize>) -> String {

@@ -1,7 +1,8 @@
 //! Wavefront OBJ, with diffuse colours from its material library.
 //!
 //! Only positions, faces and materials matter here. Their lines are checked first, so that errors have a line, and
-//! handed alone to `tobj`; faces with more than three corners become fans, so they should be convex.
+//! handed alone to `tobj`; faces with more than three corners become fans, so they should be convex. A face with fewer has no
+//! area and is passed over.
 
 use super::{Fault, RawMesh};
 use std::path::Path;
@@ -74,7 +75,9 @@ fn check_lines(text: &str) -> Result<String, Fault> {
             }
             "f" => {
                 let corners = check_face(rest, vertices).map_err(|reason| Fault::in_line(i + 1, reason))?;
-                kept.extend(["f ", &corners, "\n"]);
+                if let Some(corners) = corners {
+                    kept.extend(["f ", &corners, "\n"]);
+                }
             }
             "o" | "g" | "usemtl" | "mtllib" if !rest.trim().is_empty() => kept.extend([word, " ", rest, "\n"]),
             _ => {}
@@ -96,7 +99,7 @@ fn check_vertex(rest: &str) -> Result<String, String> {
     }
 }
 
-fn check_face(rest: &str, vertices: i64) -> Result<String, String> {
+fn check_face(rest: &str, vertices: i64) -> Result<Option<String>, String> {
     let mut corners = String::new();
     let mut count = 0;
     for corner in rest.split_whitespace() {
@@ -109,5 +112,5 @@ fn check_face(rest: &str, vertices: i64) -> Result<String, String> {
         corners.push_str(&format!("{from_one} "));
         count += 1;
     }
-    if count < 3 { Err(format!("a face has {count} corners")) } else { Ok(corners) }
+    Ok((count >= 3).then_some(corners))
 }

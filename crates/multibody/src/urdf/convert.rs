@@ -1,34 +1,40 @@
-//! From urdf-rs's types to a [`RobotDescription`]: parents before children, numbers as vectors and poses.
+//! From the checked tags to a [`RobotDescription`]: parents before children, numbers as vectors and poses.
 //!
-//! Roll, pitch, yaw of URDF: R = Rz(yaw) Ry(pitch) Rx(roll).
+//! What the walk found unsound and yet no reason to refuse the robot is left out here: a visual altogether, a collision as
+//! [`Geometry::Missing`].
 
-use super::checks::{Checked, MeshKey};
-use super::joints::Follows;
+use super::checks::Checked;
+use super::docking::DockingShapes;
+use super::facts::{InertialFact, JointFact, LinkFact, origin_of, part, tag_in};
+use super::joints::{Follows, limits_of};
+use super::meshes::{MeshKey, Meshes};
+use super::schema::{ROBOT, Tag};
+use super::walk::{numbers_of, own_children, text_of};
 use crate::{
     Collision, Geometry, Inertial, JointDescription, JointKind, LinkDescription, Mimic, RobotDescription, Visual,
 };
-use spatial::{Mat3, Pose, Rot, Vec3};
+use roxmltree::Node;
+use spatial::Vec3;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// Builds the description of a robot whose checks found nothing; `None` if urdf-rs read another robot than the checks.
-pub(crate) fn convert(robot: &urdf_rs::Robot, checked: &Checked, file: &Path) -> Option<RobotDescription> {
-    let order = &checked.graph.order;
-    if robot.links.len() != order.len() || robot.joints.len() + 1 != order.len() {
-        return None;
-    }
+/// Builds the description of a robot whose checks found no error; `None` if something that they let pass is not there.
+pub(crate) fn convert(robot: Node<'_, '_>, checked: &Checked<'_, '_>, file: &Path) -> Option<RobotDescription> {
+    let (facts, order) = (&checked.facts, &checked.graph.order);
+    let (link_tag, joint_tag) = (tag_in(&ROBOT, "link")?, tag_in(&ROBOT, "joint")?);
     let numbering = Numbering::of(checked);
     let colours = collect_colours(robot);
     let joints = order.iter().filter_map(|link| checked.graph.carried_by[*link]).map(|(joint, parent)| {
         let mimic = checked.follows[joint].map(|follows| numbering.mimic(follows));
-        convert_joint(&robot.joints[joint], numbering.link[parent], mimic)
+        convert_joint(&facts.joints[joint], joint_tag, numbering.link[parent], mimic)
     });
-    let links = order.iter().map(|link| convert_link((*link, &robot.links[*link]), &colours, checked));
+    let shapes = Shapes { link_tag, colours: &colours, meshes: &checked.meshes, docking: &checked.docking };
+    let links = order.iter().map(|link| shapes.convert_link(*link, &facts.links[*link]));
     Some(RobotDescription {
-        name: robot.name.clone(),
+        name: text_of(robot, "name")?.to_owned(),
         file: file.into(),
         links: links.collect::<Option<_>>()?,
-        joints: joints.collect(),
+        joints: joints.collect::<Option<_>>()?,
     })
 }
 
@@ -39,9 +45,9 @@ struct Numbering {
 }
 
 impl Numbering {
-    fn of(checked: &Checked) -> Self {
+    fn of(checked: &Checked<'_, '_>) -> Self {
         let order = &checked.graph.order;
-        let mut numbering = Self { link: vec![0; order.len()], joint: vec![0; order.len()] };
+        let mut numbering = Self { link: vec![0; order.len()], joint: vec![0; checked.facts.joints.len()] };
         for (new, &old) in order.iter().enumerate() {
             numbering.link[old] = new;
             if let Some((joint, _)) = checked.graph.carried_by[old] {
@@ -56,129 +62,145 @@ impl Numbering {
     }
 }
 
-fn convert_joint(joint: &urdf_rs::Joint, parent: usize, mimic: Option<Mimic>) -> JointDescription {
-    let kind = kind_of(&joint.joint_type);
-    let limits = [joint.limit.lower, joint.limit.upper];
-    let is_limited = matches!(joint.joint_type, urdf_rs::JointType::Revolute | urdf_rs::JointType::Prismatic);
-    let position_limits = Some(limits).filter(|l| is_limited && l.iter().any(|x| x.is_finite()));
-    let dynamics = joint.dynamics.as_ref();
-    JointDescription {
-        name: joint.name.clone(),
-        kind,
+fn convert_joint(
+    joint: &JointFact<'_, '_>,
+    tag: &'static Tag,
+    parent: usize,
+    mimic: Option<Mimic>,
+) -> Option<JointDescription> {
+    let number = |node: Option<(Node<'_, '_>, &'static Tag)>, name: &str| {
+        node.and_then(|(node, tag)| numbers_of::<1>(node, tag, name)).map_or(0.0, |[x]| x)
+    };
+    let axis = part(joint.node, tag, "axis").and_then(|(axis, tag)| numbers_of::<3>(axis, tag, "xyz"));
+    let dynamics = part(joint.node, tag, "dynamics");
+    let limits = limits_of(joint, tag);
+    Some(JointDescription {
+        name: joint.name.to_owned(),
+        kind: kind_of(joint.kind)?,
         parent,
-        pose_pj: pose(&joint.origin),
-        axis: Vec3::from(*joint.axis.xyz).try_normalize(0.0).unwrap_or_else(Vec3::x),
-        position_limits,
-        effort_limit: joint.limit.effort,
-        velocity_limit: joint.limit.velocity,
-        damping: dynamics.map_or(0.0, |d| d.damping),
-        friction: dynamics.map_or(0.0, |d| d.friction),
+        pose_pj: origin_of(joint.node, tag)?,
+        axis: axis.map_or_else(Vec3::x, Vec3::from).try_normalize(0.0).unwrap_or_else(Vec3::x),
+        position_limits: limits.position,
+        effort_limit: limits.effort,
+        velocity_limit: limits.velocity,
+        damping: number(dynamics, "damping"),
+        friction: number(dynamics, "friction"),
         mimic,
-    }
-}
-
-fn kind_of(written: &urdf_rs::JointType) -> JointKind {
-    match written {
-        urdf_rs::JointType::Revolute | urdf_rs::JointType::Continuous => JointKind::Revolute,
-        urdf_rs::JointType::Prismatic => JointKind::Prismatic,
-        urdf_rs::JointType::Floating => JointKind::Floating,
-        urdf_rs::JointType::Planar => JointKind::Planar,
-        // The checks let no spherical joint through.
-        urdf_rs::JointType::Fixed | urdf_rs::JointType::Spherical => JointKind::Fixed,
-    }
-}
-
-fn pose(origin: &urdf_rs::Pose) -> Pose {
-    let [roll, pitch, yaw] = *origin.rpy;
-    Pose::from_parts(Vec3::from(*origin.xyz).into(), Rot::from_euler_angles(roll, pitch, yaw))
-}
-
-fn convert_link(
-    (number, link): (usize, &urdf_rs::Link),
-    colours: &Colours<'_>,
-    checked: &Checked,
-) -> Option<LinkDescription> {
-    let collisions = link.collision.iter().enumerate();
-    Some(LinkDescription {
-        name: link.name.clone(),
-        inertial: convert_inertial(&link.inertial),
-        visuals: link
-            .visual
-            .iter()
-            .enumerate()
-            .map(|(i, visual)| {
-                let name = given(&visual.name).unwrap_or_else(|| format!("{}_visual_{i}", link.name));
-                convert_visual(name, visual, colours, checked)
-            })
-            .collect::<Option<_>>()?,
-        collisions: collisions
-            .map(|(i, collision)| {
-                let is_only = link.collision.len() == 1;
-                let made_up = || if is_only { link.name.clone() } else { format!("{}_{}", link.name, i + 1) };
-                let name = given(&collision.name).unwrap_or_else(made_up);
-                let geometry = match checked.docking.get(&(number, i)) {
-                    Some(docking) => Geometry::Docking(*docking),
-                    None => convert_geometry(&collision.geometry, checked)?,
-                };
-                Some(Collision { name, pose_ls: pose(&collision.origin), geometry })
-            })
-            .collect::<Option<_>>()?,
     })
 }
 
-fn convert_visual(name: String, visual: &urdf_rs::Visual, colours: &Colours<'_>, checked: &Checked) -> Option<Visual> {
-    let material = visual.material.as_ref();
-    let rgba = material.and_then(|m| colour_of(m).or_else(|| colours.get(m.name.as_str()).copied()));
-    let geometry = convert_geometry(&visual.geometry, checked)?;
-    Some(Visual { name, pose_ls: pose(&visual.origin), geometry, rgba })
+fn kind_of(written: &str) -> Option<JointKind> {
+    Some(match written {
+        "revolute" | "continuous" => JointKind::Revolute,
+        "prismatic" => JointKind::Prismatic,
+        "floating" => JointKind::Floating,
+        "planar" => JointKind::Planar,
+        "fixed" => JointKind::Fixed,
+        _ => return None,
+    })
 }
 
-fn given(name: &Option<String>) -> Option<String> {
-    name.clone().filter(|n| !n.trim().is_empty())
+/// What links are converted with.
+struct Shapes<'a> {
+    link_tag: &'static Tag,
+    colours: &'a Colours<'a>,
+    meshes: &'a Meshes,
+    docking: &'a DockingShapes,
 }
 
-/// The tensor turned into link axes: R I Rᵀ, with R of the inertial frame in the link frame.
-fn convert_inertial(inertial: &urdf_rs::Inertial) -> Option<Inertial> {
-    let mass = inertial.mass.value;
-    let i = &inertial.inertia;
-    let tensor = Mat3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);
-    let pose_li = pose(&inertial.origin);
-    // No rounding where nothing turns.
-    let is_turned = *inertial.origin.rpy != [0.0; 3];
-    let rot = pose_li.rotation.to_rotation_matrix().into_inner();
-    let tensor_com = if is_turned { rot * tensor * rot.transpose() } else { tensor };
-    // Symmetric to the last bit.
-    let tensor_com = 0.5 * (tensor_com + tensor_com.transpose());
-    (mass != 0.0).then_some(Inertial { mass, com: pose_li.translation.vector, tensor_com })
-}
+impl Shapes<'_> {
+    fn convert_link(&self, number: usize, link: &LinkFact<'_, '_>) -> Option<LinkDescription> {
+        let named = |name: &'static str| own_children(link.node).filter(move |n| n.tag_name().name() == name);
+        let (visual_tag, collision_tag) = (tag_in(self.link_tag, "visual")?, tag_in(self.link_tag, "collision")?);
+        let visuals = named("visual").enumerate().filter_map(|(i, visual)| {
+            let name = given_name(visual).unwrap_or_else(|| format!("{}_visual_{i}", link.name));
+            self.convert_visual(name, visual, visual_tag)
+        });
+        let is_only = named("collision").count() == 1;
+        let collisions = named("collision").enumerate().map(|(i, collision)| {
+            let made_up = || if is_only { link.name.to_owned() } else { format!("{}_{}", link.name, i + 1) };
+            let docking = self.docking.get(&(number, i)).map(|docking| Geometry::Docking(*docking));
+            Some(Collision {
+                name: given_name(collision).unwrap_or_else(made_up),
+                pose_ls: origin_of(collision, collision_tag)?,
+                geometry: docking.unwrap_or_else(|| self.geometry_of(collision, collision_tag)),
+            })
+        });
+        Some(LinkDescription {
+            name: link.name.to_owned(),
+            inertial: link.inertial.as_ref().and_then(convert_inertial),
+            visuals: visuals.collect(),
+            collisions: collisions.collect::<Option<_>>()?,
+        })
+    }
 
-fn convert_geometry(geometry: &urdf_rs::Geometry, checked: &Checked) -> Option<Geometry> {
-    Some(match geometry {
-        urdf_rs::Geometry::Box { size } => Geometry::Box { size: Vec3::from(**size) },
-        urdf_rs::Geometry::Cylinder { radius, length } => Geometry::Cylinder { radius: *radius, length: *length },
-        urdf_rs::Geometry::Capsule { radius, length } => Geometry::Capsule { radius: *radius, length: *length },
-        urdf_rs::Geometry::Sphere { radius } => Geometry::Sphere { radius: *radius },
-        urdf_rs::Geometry::Mesh { filename, scale } => {
-            let key = MeshKey::new(filename, scale.map_or([1.0; 3], |s| *s));
-            Geometry::Mesh(checked.meshes.get(&key)?.clone())
+    fn convert_visual(&self, name: String, visual: Node<'_, '_>, tag: &'static Tag) -> Option<Visual> {
+        let geometry = Some(self.geometry_of(visual, tag)).filter(|g| !matches!(g, Geometry::Missing(_)))?;
+        let material = part(visual, tag, "material").map(|(material, _)| material);
+        let named = |m: Node<'_, '_>| self.colours.get(text_of(m, "name").unwrap_or_default()).copied();
+        let rgba = material.and_then(|m| colour_of(m).or_else(|| named(m)));
+        Some(Visual { name, pose_ls: origin_of(visual, tag)?, geometry, rgba })
+    }
+
+    /// The shape of a `<visual>` or `<collision>`.
+    fn geometry_of(&self, shape: Node<'_, '_>, tag: &'static Tag) -> Geometry {
+        let geometry = part(shape, tag, "geometry");
+        let known = geometry
+            .and_then(|(node, tag)| own_children(node).find_map(|n| Some((n, tag_in(tag, n.tag_name().name())?))));
+        let Some((form, tag)) = known else { return Geometry::Missing("its <geometry> is no shape of URDF".into()) };
+        if tag.name == "mesh" {
+            return self.mesh_of(form);
         }
+        primitive_of(form, tag).unwrap_or_else(|| Geometry::Missing(format!("its <{}> is unsound", tag.name).into()))
+    }
+
+    fn mesh_of(&self, mesh: Node<'_, '_>) -> Geometry {
+        match MeshKey::of(mesh).and_then(|(key, _)| self.meshes.get(&key)) {
+            Some(Ok(mesh)) => Geometry::Mesh(mesh.clone()),
+            Some(Err(error)) => Geometry::Missing(error.to_string().into()),
+            None => Geometry::Missing("its <mesh> is unsound".into()),
+        }
+    }
+}
+
+fn primitive_of(node: Node<'_, '_>, tag: &'static Tag) -> Option<Geometry> {
+    let number = |name| numbers_of::<1>(node, tag, name).map(|[x]| x);
+    Some(match tag.name {
+        "box" => Geometry::Box { size: Vec3::from(numbers_of::<3>(node, tag, "size")?) },
+        "sphere" => Geometry::Sphere { radius: number("radius")? },
+        "cylinder" => Geometry::Cylinder { radius: number("radius")?, length: number("length")? },
+        "capsule" => Geometry::Capsule { radius: number("radius")?, length: number("length")? },
+        _ => return None,
     })
 }
 
-fn colour_of(material: &urdf_rs::Material) -> Option<[f64; 4]> {
-    material.color.as_ref().map(|c| *c.rgba)
+fn given_name(shape: Node<'_, '_>) -> Option<String> {
+    text_of(shape, "name").filter(|n| !n.trim().is_empty()).map(str::to_owned)
+}
+
+fn convert_inertial(fact: &InertialFact) -> Option<Inertial> {
+    (!fact.is_nothing()).then_some(Inertial { mass: fact.mass, com: fact.com, tensor_com: fact.tensor_l })
+}
+
+fn colour_of(material: Node<'_, '_>) -> Option<[f64; 4]> {
+    let tag = tag_in(&ROBOT, "material")?;
+    part(material, tag, "color").and_then(|(colour, tag)| numbers_of::<4>(colour, tag, "rgba"))
 }
 
 /// Colours by the name of their material.
 type Colours<'a> = HashMap<&'a str, [f64; 4]>;
 
 /// Colours by name: the robot's, then those that a visual defines and others mention.
-fn collect_colours(robot: &urdf_rs::Robot) -> Colours<'_> {
-    let visual = robot.links.iter().flat_map(|l| &l.visual).filter_map(|v| v.material.as_ref());
+fn collect_colours<'a>(robot: Node<'a, '_>) -> Colours<'a> {
+    let named = |node: Node<'a, '_>, name: &'static str| {
+        own_children(node).filter(|n| n.tag_name().name() == name).collect::<Vec<_>>()
+    };
+    let visuals = named(robot, "link").into_iter().flat_map(|link| named(link, "visual"));
+    let inside = visuals.flat_map(|visual| named(visual, "material"));
     let mut colours = Colours::new();
-    for material in robot.materials.iter().chain(visual) {
-        if let Some(rgba) = colour_of(material) {
-            colours.entry(material.name.as_str()).or_insert(rgba);
+    for material in named(robot, "material").into_iter().chain(inside) {
+        if let (Some(rgba), Some(name)) = (colour_of(material), text_of(material, "name")) {
+            colours.entry(name).or_insert(rgba);
         }
     }
     colours

@@ -3,11 +3,13 @@
 //! A fact is `None` where the file does not tell it, or tells it wrongly (the walk has reported that already), so the
 //! checks after the walk say only what is new.
 
-use super::errors::{Findings, UrdfProblem};
+use super::errors::UrdfProblem;
+use super::findings::Findings;
 use super::schema::{ROBOT, Tag};
 use super::walk::{numbers_of, own_children, subject_of, text_of};
 use roxmltree::Node;
-use spatial::Mat3;
+use spatial::nalgebra::Quaternion;
+use spatial::{Inertia, Mat3, Pose, Rot, Vec3};
 use std::collections::HashMap;
 
 /// A link.
@@ -18,11 +20,27 @@ pub(crate) struct LinkFact<'a, 'i> {
     pub(crate) inertial: Option<InertialFact>,
 }
 
-/// Mass and tensor, in the inertial frame's own axes.
+/// Mass, place of its centre in the link frame, and tensor about it.
 pub(crate) struct InertialFact {
     pub(crate) offset: usize,
     pub(crate) mass: f64,
+    pub(crate) com: Vec3,
+    /// In the inertial frame's own axes, as written.
     pub(crate) tensor: Mat3,
+    /// In the link's axes.
+    pub(crate) tensor_l: Mat3,
+}
+
+impl InertialFact {
+    /// About the link's origin, in its axes.
+    pub(crate) fn inertia(&self) -> Inertia {
+        Inertia::from_com(self.mass, &self.com, &self.tensor_l)
+    }
+
+    /// Whether it says nothing.
+    pub(crate) fn is_nothing(&self) -> bool {
+        self.mass == 0.0 && self.tensor.iter().all(|x| *x == 0.0)
+    }
 }
 
 /// A joint.
@@ -66,16 +84,6 @@ impl LinkFact<'_, '_> {
 
     pub(crate) fn offset(&self) -> usize {
         self.node.range().start
-    }
-
-    /// Whether it says something of its mass, sound or not.
-    pub(crate) fn has_inertial_tag(&self) -> bool {
-        own_children(self.node).any(|n| n.tag_name().name() == "inertial")
-    }
-
-    /// Whether it has a mass.
-    pub(crate) fn has_mass(&self) -> bool {
-        self.inertial.as_ref().is_some_and(|i| i.mass != 0.0)
     }
 }
 
@@ -153,7 +161,34 @@ fn inertial_fact(node: Node<'_, '_>, tag: &'static Tag) -> Option<InertialFact> 
     let (ixx, iyy, izz) = (moment("ixx")?, moment("iyy")?, moment("izz")?);
     let (ixy, ixz, iyz) = (moment("ixy")?, moment("ixz")?, moment("iyz")?);
     let tensor = Mat3::new(ixx, ixy, ixz, ixy, iyy, iyz, ixz, iyz, izz);
-    Some(InertialFact { offset: node.range().start, mass, tensor })
+    let pose_li = origin_of(node, tag)?;
+    let (com, tensor_l) = (pose_li.translation.vector, turned(&tensor, &pose_li.rotation));
+    Some(InertialFact { offset: node.range().start, mass, com, tensor, tensor_l })
+}
+
+/// R I Rᵀ, symmetric to the last bit, and without rounding where nothing turns.
+fn turned(tensor: &Mat3, rotation: &Rot) -> Mat3 {
+    if *rotation == Rot::identity() {
+        return *tensor;
+    }
+    let rot = rotation.to_rotation_matrix().into_inner();
+    let turned = rot * tensor * rot.transpose();
+    0.5 * (turned + turned.transpose())
+}
+
+/// The pose that a tag's `<origin>` gives: R = Rz(yaw) Ry(pitch) Rx(roll); `None` if it is unsound.
+pub(crate) fn origin_of(node: Node<'_, '_>, tag: &'static Tag) -> Option<Pose> {
+    let Some((origin, tag)) = part(node, tag, "origin") else { return Some(Pose::identity()) };
+    let given = |name| text_of(origin, name).is_some();
+    let vector = |name| if given(name) { numbers_of::<3>(origin, tag, name) } else { Some([0.0; 3]) };
+    let [roll, pitch, yaw] = vector("rpy")?;
+    let rotation = if given("quat_xyzw") {
+        let [x, y, z, w] = numbers_of(origin, tag, "quat_xyzw")?;
+        Rot::new_normalize(Quaternion::new(w, x, y, z))
+    } else {
+        Rot::from_euler_angles(roll, pitch, yaw)
+    };
+    Some(Pose::from_parts(Vec3::from(vector("xyz")?).into(), rotation))
 }
 
 fn joint_fact<'a, 'i>(node: Node<'a, 'i>) -> Option<JointFact<'a, 'i>> {

@@ -1,7 +1,9 @@
 //! Checks of single joints: type, axis, limits, and whom they follow.
 
-use super::errors::{Findings, UrdfProblem, cut};
+use super::doubts::UrdfDoubt;
+use super::errors::{UrdfProblem, cut};
 use super::facts::{Facts, JointFact, part, tag_in};
+use super::findings::Findings;
 use super::nearest::find_nearest;
 use super::schema::{ROBOT, Tag};
 use super::walk::{numbers_of, own_attribute, text_of, version_of};
@@ -50,33 +52,54 @@ fn check_axis(joint: &JointFact<'_, '_>, tag: &'static Tag, findings: &mut Findi
 fn check_limit(joint: &JointFact<'_, '_>, tag: &'static Tag, findings: &mut Findings<'_>) {
     let (kind, advice) = if joint.kind == "revolute" { ("revolute", TURNS_FREELY) } else { ("prismatic", "") };
     let Some((limit, limit_tag)) = part(joint.node, tag, "limit") else {
-        findings.add(joint.offset(), joint.subject(), UrdfProblem::MissingLimit { kind, advice });
+        findings.doubt(joint.offset(), joint.subject(), UrdfDoubt::MissingLimit { kind, advice });
         return;
     };
-    let bound = |name| text_of(limit, name).map(|_| numbers_of::<1>(limit, limit_tag, name).map(|[x]| x));
     let start = limit.range().start;
-    match (bound("lower"), bound("upper")) {
-        (None, None) if !are_missing_bounds_infinite(limit) => {
-            findings.add(start, joint.subject(), UrdfProblem::EmptyLimit { advice });
+    if text_of(limit, "lower").or(text_of(limit, "upper")).is_none() {
+        if version_of(limit) < BOUNDS_ARE_OPEN {
+            findings.doubt(start, joint.subject(), UrdfDoubt::EmptyLimit { advice });
         }
-        (lower, upper) if !are_missing_bounds_infinite(limit) => {
-            let (lower, upper) = (lower.unwrap_or(Some(0.0)), upper.unwrap_or(Some(0.0)));
-            check_order(joint, start, lower.zip(upper), findings);
-        }
-        (Some(lower), Some(upper)) => check_order(joint, start, lower.zip(upper), findings),
-        _ => {}
+    } else if let Some([lower, upper]) = bounds_of(limit, limit_tag).filter(|[lower, upper]| lower >= upper) {
+        findings.doubt(start, joint.subject(), UrdfDoubt::NoRange { lower, upper });
+    }
+    if numbers_of(limit, limit_tag, "effort") == Some([0.0]) {
+        findings.doubt(start, joint.subject(), UrdfDoubt::NoEffort);
     }
 }
 
-/// In URDF 1.2 a missing bound is none; before, it is 0.
-pub(crate) fn are_missing_bounds_infinite(node: Node<'_, '_>) -> bool {
-    version_of(node) >= (1, 2)
+/// From this version of URDF on a missing bound is none; before, it is 0.
+const BOUNDS_ARE_OPEN: (u32, u32) = (1, 2);
+
+/// Lower and upper bound as the format has them; `None` if they are unsound.
+fn bounds_of(limit: Node<'_, '_>, tag: &'static Tag) -> Option<[f64; 2]> {
+    let missing = |open| if version_of(limit) < BOUNDS_ARE_OPEN { 0.0 } else { open };
+    let bound = |name, open| match text_of(limit, name) {
+        None => Some(missing(open)),
+        Some(_) => numbers_of::<1>(limit, tag, name).map(|[x]| x),
+    };
+    Some([bound("lower", f64::NEG_INFINITY)?, bound("upper", f64::INFINITY)?])
 }
 
-fn check_order(joint: &JointFact<'_, '_>, start: usize, limits: Option<(f64, f64)>, findings: &mut Findings<'_>) {
-    if let Some((lower, upper)) = limits.filter(|(lower, upper)| lower > upper) {
-        findings.add(start, joint.subject(), UrdfProblem::CrossedLimits { lower, upper });
-    }
+/// What a joint may do.
+pub(crate) struct Limits {
+    /// Stops; one of them may be infinite, never both.
+    pub(crate) position: Option<[f64; 2]>,
+    /// Infinite if not given.
+    pub(crate) effort: f64,
+    /// Infinite if not given.
+    pub(crate) velocity: f64,
+}
+
+/// The limits of a joint, after [`check_joints`] has told what is odd about them: a range that is none limits nothing.
+pub(crate) fn limits_of(joint: &JointFact<'_, '_>, tag: &'static Tag) -> Limits {
+    let Some((limit, limit_tag)) = part(joint.node, tag, "limit") else {
+        return Limits { position: None, effort: f64::INFINITY, velocity: f64::INFINITY };
+    };
+    let largest = |name| numbers_of(limit, limit_tag, name).map_or(f64::INFINITY, |[x]| x);
+    let has_stops = matches!(joint.kind, "revolute" | "prismatic");
+    let range = bounds_of(limit, limit_tag).filter(|b| has_stops && b[0] < b[1] && b.iter().any(|x| x.is_finite()));
+    Limits { position: range, effort: largest("effort"), velocity: largest("velocity") }
 }
 
 /// Resolves chains of mimics to leaders that follow nobody.
@@ -114,10 +137,15 @@ fn follow((leader, m, o): Follows, resolved: &[Option<Option<Follows>>]) -> Foll
 fn direct_leader(facts: &Facts<'_, '_>, joint: &JointFact<'_, '_>, findings: &mut Findings<'_>) -> Option<Follows> {
     let mimic = joint.mimic?;
     let name = cut(mimic.leader.name);
+    if joint.kind == "fixed" {
+        findings.doubt(mimic.leader.offset, joint.subject(), UrdfDoubt::FixedFollower { leader: name });
+        return None;
+    }
     let problem = match facts.joint_index.get(mimic.leader.name) {
         None => {
             let nearest = nearest_name(mimic.leader.name, facts.joints.iter().map(|j| j.name), findings);
-            UrdfProblem::UnknownLeader { name, nearest }
+            findings.doubt(mimic.leader.offset, joint.subject(), UrdfDoubt::UnknownLeader { name, nearest });
+            return None;
         }
         Some(&leader) if !facts.joints[leader].has_one_coordinate() => {
             UrdfProblem::LeaderCannotLead { name, kind: cut(facts.joints[leader].kind) }

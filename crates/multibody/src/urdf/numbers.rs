@@ -22,11 +22,15 @@ pub(crate) fn parse_numbers(tag: &Tag, attribute: &Attribute, text: &str) -> Res
     for word in text.split_whitespace() {
         let bad =
             || UrdfProblem::BadNumber { tag: tag.name, attribute: attribute.name, text: cut(text), word: cut(word) };
-        let number = word.parse::<f64>().map_err(|_| bad())?;
+        let number = word.parse::<f64>().map(|x| unlimited(kind, x)).map_err(|_| bad())?;
         if number.is_nan() || (number.is_infinite() && !may_be_infinite(kind)) {
             return Err(bad());
         }
         numbers.push(number);
+    }
+    if kind == Kind::Scale {
+        // pybullet's files have a fourth; the walk tells.
+        numbers.truncate(expected);
     }
     if numbers.len() != expected {
         let (attribute, found) = (attribute.name, numbers.len());
@@ -44,6 +48,11 @@ fn number_count(kind: Kind) -> Option<usize> {
         Kind::Vec3 | Kind::Size | Kind::Scale => Some(3),
         Kind::Rgba | Kind::Quaternion => Some(4),
     }
+}
+
+/// Some write 1e16 for "no limit".
+fn unlimited(kind: Kind, number: f64) -> f64 {
+    if may_be_infinite(kind) && number.abs() > LARGEST { number.signum() * f64::INFINITY } else { number }
 }
 
 fn may_be_infinite(kind: Kind) -> bool {

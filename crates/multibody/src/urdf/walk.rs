@@ -2,10 +2,12 @@
 //!
 //! The walk goes only where the table goes, four tags deep, so a document nested a million deep costs no stack.
 
-use super::errors::{Findings, UrdfProblem, cut};
+use super::doubts::{Loss, UrdfDoubt};
+use super::errors::{UrdfProblem, cut};
+use super::findings::Findings;
 use super::nearest::find_nearest;
 use super::numbers::parse_numbers;
-use super::schema::{Attribute, Count, HOMES, ROBOT, Tag, example_of};
+use super::schema::{Count, HOMES, Kind, ROBOT, Tag, example_of};
 use roxmltree::Node;
 
 /// Tags of this document's own vocabulary, as opposed to a vendor's with a namespace of its own.
@@ -40,7 +42,6 @@ pub(crate) fn check_tags(robot: Node<'_, '_>, findings: &mut Findings<'_>) {
         };
         check_tag(node, child.tag, &subject_of(node), findings);
     }
-    check_vendor_tags(robot, findings);
 }
 
 /// `link "palm"`, or the tag alone if it has no name.
@@ -63,16 +64,14 @@ fn check_tag(node: Node<'_, '_>, tag: &'static Tag, subject: &str, findings: &mu
 fn check_counts(node: Node<'_, '_>, tag: &'static Tag, subject: &str, findings: &mut Findings<'_>) {
     let mut shapes = 0;
     for child in tag.children {
-        let mut found = own_children(node).filter(|n| n.tag_name().name() == child.tag.name);
-        let (first, second) = (found.next(), found.next());
-        shapes += usize::from(first.is_some()) + usize::from(second.is_some());
-        if child.count == Count::One && first.is_none() {
+        let found: Vec<_> = own_children(node).filter(|n| n.tag_name().name() == child.tag.name).collect();
+        shapes += found.len();
+        if child.count == Count::One && found.is_empty() {
             let problem = UrdfProblem::MissingTag { parent: tag.name, tag: child.tag.name };
             findings.add(node.range().start, subject, problem);
         }
-        if let (Some(second), false, true) = (second, tag.is_choice, child.count != Count::Many) {
-            let problem = UrdfProblem::RepeatedTag { parent: tag.name, tag: child.tag.name };
-            findings.add(second.range().start, subject, problem);
+        if let ([first, rest @ ..], false, true) = (&found[..], tag.is_choice, child.count != Count::Many) {
+            Repeats { first: *first, rest, parent: tag.name, tag: child.tag }.check(subject, findings);
         }
     }
     match (tag.is_choice, shapes) {
@@ -82,10 +81,62 @@ fn check_counts(node: Node<'_, '_>, tag: &'static Tag, subject: &str, findings: 
         (true, 2..) if tag.name != "geometry" => {
             findings.add(node.range().start, subject, UrdfProblem::SeveralDockingShapes);
         }
-        (true, 0) => findings.add(node.range().start, subject, UrdfProblem::NoShape),
+        (true, 0) => check_unknown_shape(node, subject, findings),
         (true, 2..) => findings.add(node.range().start, subject, UrdfProblem::SeveralShapes),
         _ => {}
     }
+}
+
+/// A tag that stands oftener than this is a slip, whatever it says.
+const MOST_REPEATS: usize = 4;
+
+/// A tag that may stand once, and those after it.
+struct Repeats<'a, 'i, 'r> {
+    first: Node<'a, 'i>,
+    rest: &'r [Node<'a, 'i>],
+    parent: &'static str,
+    tag: &'static Tag,
+}
+
+impl Repeats<'_, '_, '_> {
+    /// A tag that stands twice and says the same twice is only odd.
+    fn check(&self, subject: &str, findings: &mut Findings<'_>) {
+        let Self { first, rest, parent, tag } = self;
+        let differs = |n: &&Node<'_, '_>| rest.len() > MOST_REPEATS || !do_agree(*first, **n, tag);
+        if let Some(other) = rest.iter().find(differs) {
+            findings.add(other.range().start, subject, UrdfProblem::RepeatedTag { parent, tag: tag.name });
+        } else if let Some(second) = rest.first() {
+            findings.doubt(second.range().start, subject, UrdfDoubt::RepeatedTag { parent, tag: tag.name });
+        }
+    }
+}
+
+/// Whether two tags say the same in all that the table knows.
+fn do_agree(a: Node<'_, '_>, b: Node<'_, '_>, tag: &'static Tag) -> bool {
+    tag.attributes.iter().all(|known| text_of(a, known.name) == text_of(b, known.name))
+        && tag.children.iter().all(|child| {
+            let of = |node| own_children(node).filter(|n| n.tag_name().name() == child.tag.name).collect::<Vec<_>>();
+            let (a, b): (Vec<_>, Vec<_>) = (of(a), of(b));
+            a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| do_agree(*a, *b, child.tag))
+        })
+}
+
+/// A geometry without a shape of ours: another program's leaves the rest of the link as it is, none at all is a slip.
+fn check_unknown_shape(geometry: Node<'_, '_>, subject: &str, findings: &mut Findings<'_>) {
+    let at = geometry.range().start;
+    match geometry.children().find(Node::is_element) {
+        Some(other) => {
+            let seen = is_in_visual(geometry);
+            let loss = Loss { seen, touching: !seen };
+            findings.doubt(at, subject, UrdfDoubt::UnknownShape { tag: cut(other.tag_name().name()), loss });
+        }
+        None => findings.add(at, subject, UrdfProblem::NoShape),
+    }
+}
+
+/// Whether a tag is part of what is seen and nothing else.
+fn is_in_visual(node: Node<'_, '_>) -> bool {
+    node.ancestors().any(|n| n.tag_name().name() == "visual")
 }
 
 fn check_unknown_tag(node: Node<'_, '_>, parent: &'static Tag, subject: &str, findings: &mut Findings<'_>) {
@@ -111,7 +162,14 @@ fn check_attributes(node: Node<'_, '_>, tag: &'static Tag, subject: &str, findin
     let start = node.range().start;
     for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
         match tag.attributes.iter().find(|known| known.name == attribute.name()) {
-            Some(known) => check_value(tag, known, &attribute, (subject, &mut *findings)),
+            Some(known) => {
+                let at = attribute.range().start;
+                if let Err(problem) = parse_numbers(tag, known, attribute.value()) {
+                    tell_value(node, at, problem, subject, findings);
+                } else if known.kind == Kind::Scale && attribute.value().split_whitespace().nth(3).is_some() {
+                    findings.doubt(at, subject, UrdfDoubt::LongScale { text: cut(attribute.value()) });
+                }
+            }
             None => check_unknown_attribute(node, tag, &attribute, (subject, &mut *findings)),
         }
     }
@@ -133,14 +191,16 @@ pub(crate) fn version_of(node: Node<'_, '_>) -> (u32, u32) {
     parts.0.parse().ok().zip(parts.1.parse().ok()).unwrap_or((1, 0))
 }
 
-fn check_value(
-    tag: &Tag,
-    known: &Attribute,
-    attribute: &roxmltree::Attribute<'_, '_>,
-    (subject, findings): (&str, &mut Findings<'_>),
-) {
-    if let Err(problem) = parse_numbers(tag, known, attribute.value()) {
-        findings.add(attribute.range().start, subject, problem);
+/// A value that only spoils the looks is no reason to refuse a robot.
+fn tell_value(node: Node<'_, '_>, at: usize, problem: UrdfProblem, subject: &str, findings: &mut Findings<'_>) {
+    match problem {
+        UrdfProblem::OutOfRange { tag: "color", attribute, text, rule } => {
+            findings.doubt(at, subject, UrdfDoubt::NoColour { tag: "color", attribute, text, rule });
+        }
+        UrdfProblem::OutOfRange { tag, attribute, text, rule } if is_in_visual(node) => {
+            findings.doubt(at, subject, UrdfDoubt::Unseen { tag, attribute, text, rule });
+        }
+        problem => findings.add(at, subject, problem),
     }
 }
 
@@ -156,13 +216,5 @@ fn check_unknown_attribute(
         let found = cut(attribute.name());
         let problem = UrdfProblem::MisspeltAttribute { tag: tag.name, found, nearest };
         findings.add(attribute.range().start, subject, problem);
-    }
-}
-
-/// Vendors' tags pass, except xacro's: they are the source of a URDF, not one.
-fn check_vendor_tags(robot: Node<'_, '_>, findings: &mut Findings<'_>) {
-    let is_xacro = |n: &Node<'_, '_>| n.tag_name().namespace().is_some_and(|uri| uri.contains("xacro"));
-    if let Some(node) = robot.descendants().find(is_xacro) {
-        findings.add(node.range().start, "robot", UrdfProblem::Xacro(cut(node.tag_name().name())));
     }
 }

@@ -135,7 +135,8 @@ fn massless_links_are_legal_where_they_are_fixed() {
         .concat(),
     );
     let robot = parse_urdf(&text, Path::new("good.urdf"), Path::new("."), &SearchPaths::default())
-        .unwrap_or_else(|e| panic!("{e}"));
+        .unwrap_or_else(|e| panic!("{e}"))
+        .robot;
     let names: Vec<&str> = robot.links.iter().map(|l| l.name.as_str()).collect();
     assert_eq!(names, ["world", "mount", "arm", "tool"], "parents stand before children");
     assert!(!robot.root_has_mass());

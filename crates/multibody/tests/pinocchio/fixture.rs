@@ -17,6 +17,8 @@ pub struct Model {
     pub columns: Vec<String>,
     /// Mass and moments that the free root is given where its file has none.
     pub ballast: Option<(f64, Vec3)>,
+    /// Inertia that every joint freedom is given on top of its bodies'.
+    pub armature: f64,
     /// Per joint (and `BASE`): quantity → exponents of the typical sizes.
     pub scales: BTreeMap<String, BTreeMap<String, Vec<i32>>>,
     /// One per state.
@@ -34,15 +36,19 @@ fn folder() -> PathBuf {
     repository().join("tests/pinocchio")
 }
 
-fn repository() -> PathBuf {
+pub fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 /// Reads a set; `None`, loudly, if its robots are somebody else's and not on this machine.
 pub fn load(set: &str) -> Option<Set> {
-    let index: Value =
-        serde_json::from_str(&std::fs::read_to_string(folder().join(format!("{set}.json"))).unwrap()).unwrap();
-    let bytes = std::fs::read(folder().join(format!("{set}.f64"))).unwrap();
+    load_from(&folder(), set)
+}
+
+/// As [`load`], from another folder than the committed one.
+pub fn load_from(folder: &Path, set: &str) -> Option<Set> {
+    let index = read_index(folder, set);
+    let bytes = std::fs::read(folder.join(format!("{set}.f64"))).unwrap();
     let mut numbers = bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap()));
     let states = index["states"].as_u64().unwrap() as usize;
     let mut models = Vec::new();
@@ -56,6 +62,11 @@ pub fn load(set: &str) -> Option<Set> {
     Some(Set { gravity: vector(&index["gravity"]), models })
 }
 
+/// The index of a set.
+pub fn read_index(folder: &Path, set: &str) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(folder.join(format!("{set}.json"))).unwrap()).unwrap()
+}
+
 fn read_model(entry: &Value) -> Option<Model> {
     let ballast = &entry["ballast"];
     Some(Model {
@@ -65,6 +76,7 @@ fn read_model(entry: &Value) -> Option<Model> {
         links: serde_json::from_value(entry["links"].clone()).unwrap(),
         columns: serde_json::from_value(entry["columns"].clone()).unwrap(),
         ballast: ballast["mass"].as_f64().map(|mass| (mass, vector(&ballast["tensor"]))),
+        armature: entry["armature"].as_f64().unwrap_or(0.0),
         scales: serde_json::from_value(entry["scales"].clone()).unwrap(),
         rows: Vec::new(),
     })

@@ -2,12 +2,14 @@
 //!
 //! Robots: the Panda, the UR5 and the iiwa (of other packages: name their site-packages folder in
 //! SOFTDOCK_THIRD_PARTY_ROBOTS, or they are skipped), this repository's servicer, and 50 random trees with every kind
-//! of joint. Reference values, what they are projections of, and how to make them anew: tests/pinocchio/generate.py.
+//! of joint. Reference values, what they are projections of, and how to make them anew: tests/pinocchio/generate.py. Where
+//! Pinocchio itself is installed beside the robots, every URDF of theirs is compared as well ([`every`]).
 //!
 //! `cargo test -p softdock-multibody --test pinocchio -- --nocapture` prints the largest difference per quantity.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs, unreachable_pub)]
 
+mod every;
 mod fixture;
 mod load;
 mod ours;
@@ -56,7 +58,7 @@ fn fifty_random_trees_are_as_in_pinocchio() {
 fn a_relative_change_of_1e_minus_7_anywhere_shows() {
     const CHANGE: f64 = 1e-7;
     let set = fixture::load("servicer").unwrap();
-    let (model, tree) = (&set.models[1], load::load(&set.models[1]));
+    let (model, tree) = (&set.models[1], load::load(&set.models[1]).unwrap());
     assert_seen(&set, model, "inertia", &tree, |t, j| t.bodies[j + 1].inertia.rot *= 1.0 + CHANGE);
     assert_seen(&set, model, "mass", &tree, |t, j| t.bodies[j + 1].inertia.mass *= 1.0 + CHANGE);
     assert_seen(&set, model, "place", &tree, |t, j| t.joints[j].frame_pj.pos.x += CHANGE);
@@ -77,7 +79,7 @@ fn compare(name: &str) {
     let Some(set) = fixture::load(name) else { return };
     let mut worst = [Worst::new(), Worst::new()];
     for model in &set.models {
-        let tree = load::load(model);
+        let tree = load::load(model).unwrap_or_else(|errors| panic!("{errors}"));
         assert_same_freedoms(model, &tree);
         compare_model(&set, model, &tree, &mut worst[usize::from(model.base_free)]);
     }

@@ -73,6 +73,7 @@ impl<'a> Ours<'a> {
             }
             "mass" => self.mass(part),
             "com" | "linear" | "angular" => self.centroidal(what),
+            "total" => Projection::of(self.tree.bodies.iter().map(|b| b.inertia.mass)),
             "kinetic" => Projection::of(std::iter::once(calc_kinetic_energy(&self.kin))),
             "potential" => self.potential(),
             _ => panic!("the index has a column {name:?} that this test does not know"),
@@ -167,7 +168,13 @@ impl<'a> Ours<'a> {
             "linear" => momentum.force,
             _ => momentum.moment,
         };
-        Projection::weighted(&self.draw.weights(what, "", 3), vector.as_slice())
+        let mut projection = Projection::weighted(&self.draw.weights(what, "", 3), vector.as_slice());
+        if what == "linear" {
+            // It may vanish (the bodies of a wheel turn about their centres); its natural size is that of its terms.
+            let terms = |(i, v): (&spatial::Inertia, &Twist)| i.mass * v.lin.norm() + v.ang.norm() * i.mc.norm();
+            projection.size += self.kin.inertia.iter().zip(&self.kin.vel).map(terms).sum::<f64>();
+        }
+        projection
     }
 
     /// Sized by the bodies' own energies, which may cancel.

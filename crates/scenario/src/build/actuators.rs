@@ -30,12 +30,16 @@ impl ActuatorTable {
 pub(super) fn resolve(scenario: &Scenario, vehicles: &mut [VehicleSpec], faults: &mut Faults<'_>) -> ActuatorTable {
     let mut rotors = vec![None; scenario.actuators.len()];
     for (i, actuator) in scenario.actuators.iter().enumerate() {
-        if let spec::ActuatorKind::ReactionWheel { link, inertia_kg_m2, .. } = &actuator.kind
+        if let spec::ActuatorKind::ReactionWheel { link, inertia_kg_m2, speed_limit_rad_per_s, speed_rad_per_s, .. } =
+            &actuator.kind
             && let Some((Some(v), l)) = place_of(vehicles, link, &format!("actuator[{i}].link"), faults)
         {
             let (tree, axis) = (&mut vehicles[v].tree, actuator.kind.axis().unwrap_or_else(Vec3::x));
             let (body, axis) = (tree.links[l].body, tree.links[l].frame_bl.rot * axis);
-            rotors[i] = Some((v, tree.add_rotor(body, &axis, *inertia_kg_m2, &actuator.name)));
+            let rotor = tree.add_rotor(body, &axis, *inertia_kg_m2, &actuator.name);
+            tree.joints[rotor].velocity_limit = *speed_limit_rad_per_s;
+            rotors[i] = Some((v, rotor));
+            check_start_speed(i, *speed_rad_per_s, *speed_limit_rad_per_s, faults);
         }
     }
     let is_latch = |m: &spec::Mechanism| matches!(m.kind, spec::MechanismKind::Latch(_));
@@ -52,6 +56,14 @@ pub(super) fn resolve(scenario: &Scenario, vehicles: &mut [VehicleSpec], faults:
         vehicles[v].tree.joints[j].armature += inertia;
     }
     table
+}
+
+fn check_start_speed(i: usize, speed: f64, limit: f64, faults: &mut Faults<'_>) {
+    if speed.abs() > limit {
+        let reason =
+            format!("starts at {speed} rad/s, beyond its limit of {limit}; lower it or raise speed_limit_rad_per_s");
+        faults.add(&format!("actuator[{i}].speed_rad_per_s"), reason);
+    }
 }
 
 /// Vehicle, joint and inertia of the rotors that an actuator's drives reflect to their joints.
@@ -102,6 +114,7 @@ fn add(table: &mut ActuatorTable, actuator: &spec::Actuator, site: &Site<'_>, fa
     match &actuator.kind {
         spec::ActuatorKind::JointTorque { joint, limit_n_m, limit_n, .. } => {
             for (v, joint) in joints_of(site, joint, &key("joint"), faults) {
+                check_limit(joint, [*limit_n_m, *limit_n], &key(""), faults);
                 let limit = limit_n_m.or(*limit_n).unwrap_or(joint.effort_limit);
                 let coordinate = site.coordinate(v, joint);
                 push(actuator.name.clone(), ActuatorKind::JointEffort { coordinate, limit });
@@ -113,7 +126,12 @@ fn add(table: &mut ActuatorTable, actuator: &spec::Actuator, site: &Site<'_>, fa
                 for (v, joint) in joints_of(site, pattern, &key(if single { "joint" } else { "joints" }), faults) {
                     if drive.is_linear() != (joint.kind == JointKind::Prismatic) {
                         faults.add(&key(""), unit_mismatch(joint));
+                    } else if drive.damping_n_m_s_per_rad.is_some() && drive.is_linear()
+                        || drive.damping_n_s_per_m.is_some() && !drive.is_linear()
+                    {
+                        faults.add(&key("damping"), unit_mismatch(joint));
                     }
+                    check_limit(joint, [drive.limit_n_m, drive.limit_n], &key(""), faults);
                     let name = if single { actuator.name.clone() } else { format!("{}/{}", actuator.name, joint.name) };
                     let coordinate = site.coordinate(v, joint);
                     let limit = drive.limit().unwrap_or(joint.effort_limit);
@@ -146,6 +164,23 @@ fn add(table: &mut ActuatorTable, actuator: &spec::Actuator, site: &Site<'_>, fa
             }
             None => faults.unknown(&key("latch"), "latch", latch, site.latches.iter().map(|(_, name)| *name)),
         },
+    }
+}
+
+/// The limit of a joint's actuator, of the keys for a turning and a sliding joint or else the URDF's, is one that can act.
+fn check_limit(joint: &Joint, [turning, sliding]: [Option<f64>; 2], key: &str, faults: &mut Faults<'_>) {
+    let (name, slides) = (&joint.name, joint.kind == JointKind::Prismatic);
+    let (own, other) = if slides { (sliding, turning) } else { (turning, sliding) };
+    let keys = if slides { ["limit_n", "limit_n_m"] } else { ["limit_n_m", "limit_n"] };
+    if other.is_some() {
+        let motion = if slides { "slides" } else { "turns" };
+        faults.add(&format!("{key}{}", keys[1]), format!("joint \"{name}\" {motion}; give {} instead", keys[0]));
+    } else if own.is_none() && joint.effort_limit <= 0.0 {
+        let reason = format!(
+            "joint \"{name}\" has the effort limit 0 in its URDF, so that its actuator could give nothing; give {} here",
+            keys[0]
+        );
+        faults.add(key.trim_end_matches('.'), reason);
     }
 }
 

@@ -5,7 +5,7 @@ use super::faults::Faults;
 use super::shapes::shape_of_geometry;
 use crate::spec::ShapeKind;
 use contact::{Bed, Shape};
-use multibody::LinkDescription;
+use multibody::{Geometry, LinkDescription};
 use record::docking_of_geometry;
 use spatial::{Pose, Vec3};
 
@@ -24,6 +24,10 @@ pub(super) fn shape_of_kind(
         faults.unknown(of_key, "collision geometry", of, collisions.iter().map(|c| c.name.as_str()));
         return None;
     };
+    if let Geometry::Missing(reason) = &collision.geometry {
+        faults.add(of_key, format!("the collision geometry \"{of}\" is missing: {reason}"));
+        return None;
+    }
     let surface = Bed::of_surface(&shape_of_geometry(&collision.geometry), *spacing_m);
     Some((collision.pose_ls, bed(surface.unwrap_or_else(|| Bed::new(Vec::new())), *reference_area_m2)))
 }

@@ -12,6 +12,8 @@ mod faults;
 mod kinematics;
 mod laws;
 mod mechanisms;
+mod missing;
+mod overlap;
 mod shapes;
 mod start;
 mod stock;
@@ -28,7 +30,7 @@ pub use stock::Stock;
 use crate::error::ScenarioErrors;
 use crate::spec::{self, Scenario};
 use crate::strategy;
-use multibody::RobotDescription;
+use multibody::{RobotDescription, UrdfWarnings};
 use sim::{Controller, Environment, Integrator, Model, ModelSpec, World};
 use spatial::Vec3;
 use std::sync::Arc;
@@ -39,6 +41,8 @@ pub struct Mission {
     pub scenario: Scenario,
     /// The robots as their files describe them, one per vehicle.
     pub robots: Vec<RobotDescription>,
+    /// What is doubtful in those files, one list per vehicle.
+    pub robot_warnings: Vec<UrdfWarnings>,
     /// The world at t = 0.
     pub world: World,
     /// The driven coordinates, in the order of [`Model::with_drive_paths`].
@@ -57,19 +61,27 @@ impl std::fmt::Debug for Mission {
     }
 }
 
-/// Builds the world and the plan of a scenario.
+/// Builds the world and the plan of a scenario; refused if its shapes stand inside each other at t = 0.
 pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
-    build_from(scenario, &Stock::default())
+    let mission = build_from(scenario, &Stock::default())?;
+    check_start(&mission)?;
+    Ok(mission)
 }
 
-/// As [`build`], to the bit, with what an earlier build of the same scenario has loaded and prepared.
+/// Refuses a mission in which shapes stand inside each other at t = 0, deeper than what presses them together would hold them.
+pub fn check_start(mission: &Mission) -> Result<(), ScenarioErrors> {
+    overlap::check(mission)
+}
+
+/// As [`build`], to the bit, with what an earlier build of the same scenario has loaded and prepared, and without
+/// [`check_start`]: a caller may have another start in mind than the file's.
 pub fn build_from(scenario: &Scenario, stock: &Stock) -> Result<Mission, ScenarioErrors> {
     let mut faults = Faults::new(scenario);
     let plan = effects::check(scenario, &mut faults);
     let Some(vehicles) = vehicles::load(scenario, &plan, stock, &mut faults) else { return Err(faults.into_errors()) };
-    let (robots, nominal_coms, mut specs) = vehicles;
+    let vehicles::Loaded { files, nominal_coms, mut specs } = vehicles;
     let table = actuators::resolve(scenario, &mut specs, &mut faults);
-    let (shapes, pairs) = shapes::resolve(scenario, &robots, &specs, &mut faults);
+    let (shapes, pairs) = shapes::resolve(scenario, &files.robots, &specs, &mut faults);
     let mechanisms = mechanisms::resolve(scenario, &specs, &mut faults);
     let environment = environment(&scenario.environment);
     let mut parts = effects::Parts {
@@ -97,7 +109,6 @@ pub fn build_from(scenario: &Scenario, stock: &Stock) -> Result<Mission, Scenari
         environment: parts.environment,
         integrator: integrator(scenario.integrator.kind),
         step: scenario.integrator.step_s,
-        one_sided_force: Vec3::zeros(),
     };
     let model = match Model::build_like(stock.scene(), spec) {
         Ok(model) => drives::attach(scenario, model, &mut faults),
@@ -107,12 +118,12 @@ pub fn build_from(scenario: &Scenario, stock: &Stock) -> Result<Mission, Scenari
         }
     };
     let Some((model, drives)) = model else { return Err(faults.into_errors()) };
-    finish(scenario, robots, (&Arc::new(model), drives), &parts.table, faults)
+    finish(scenario, files, (&Arc::new(model), drives), &parts.table, faults)
 }
 
 fn finish(
     scenario: &Scenario,
-    robots: Vec<RobotDescription>,
+    files: vehicles::RobotFiles,
     (model, drives): (&Arc<Model>, Vec<DriveChannel>),
     table: &ActuatorTable,
     mut faults: Faults<'_>,
@@ -120,11 +131,13 @@ fn finish(
     check_sensors(scenario, model, &mut faults);
     approach::check_docking(scenario, model, &mut faults);
     let world = mechanisms::settle(scenario, start::world(scenario, model, table, &mut faults));
+    missing::check_freedoms(&world, &files.warnings, &mut faults);
     let controller = strategy::build(scenario, model, table, &mut faults);
     match controller {
         Some(controller) if faults.is_empty() => Ok(Mission {
             scenario: scenario.clone(),
-            robots,
+            robots: files.robots,
+            robot_warnings: files.warnings,
             world,
             drives,
             controller,

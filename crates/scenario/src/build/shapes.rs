@@ -1,22 +1,25 @@
 //! Collision shapes and the laws of their pairs.
 //!
 //! Shapes of different vehicles (and of the world) may touch unless a `[[contact]]` says `enabled = false`; shapes of one
-//! vehicle only where a `[[contact]]` names them. Every shape answers to its own name and to its link's.
+//! vehicle only where a `[[contact]]` names them. Links that a joint holds together overlap at that joint by their nature: a
+//! glob leaves them out (as MuJoCo and Drake do), and a `[[contact]]` that names both lets them touch. Every shape answers to
+//! its own name and to its link's.
 
 use super::beds;
 use super::faults::Faults;
 use super::laws::{pair_law, pivot_law};
-use crate::spec::{Grain, PointRule, Scenario};
-use contact::Shape;
-use multibody::{Geometry, RobotDescription};
+use super::missing;
+use crate::spec::{ContactRule, FrictionLaw, Grain, PointRule, Scenario};
+use contact::{Bed, Shape};
+use multibody::{Geometry, RobotDescription, Tree};
 use record::docking_of_geometry;
 use sim::{Base, PairLaw, ShapeSpec, VehicleSpec};
 use spatial::Vec3;
 
 /// A shape with the names it answers to.
-struct Named {
-    spec: ShapeSpec,
-    names: Vec<String>,
+pub(super) struct Named {
+    pub(super) spec: ShapeSpec,
+    pub(super) names: Vec<String>,
 }
 
 impl Named {
@@ -37,7 +40,10 @@ pub(super) fn resolve(
         shapes.extend(of_robot(v, &vehicles[v].name, robot));
     }
     add_scenario_shapes(scenario, (robots, vehicles), &mut shapes, faults);
-    check_rules(scenario, &shapes, faults);
+    let lost = missing::lost_shapes(robots, vehicles);
+    check_rules(scenario, &shapes.iter().chain(lost.iter().map(|l| &l.named)).collect::<Vec<_>>(), faults);
+    missing::check_touching(&lost, &shapes, |a, b| law_of_pair(scenario, vehicles, a, b).is_some(), faults);
+    check_grains(scenario, faults);
     let mut pairs = Vec::new();
     for b in 1..shapes.len() {
         for a in 0..b {
@@ -53,7 +59,8 @@ pub(super) fn resolve(
 
 fn of_robot<'a>(v: usize, vehicle: &'a str, robot: &'a RobotDescription) -> impl Iterator<Item = Named> + 'a {
     robot.links.iter().enumerate().flat_map(move |(link, description)| {
-        description.collisions.iter().map(move |collision| Named {
+        let had = description.collisions.iter().filter(|c| !matches!(c.geometry, Geometry::Missing(_)));
+        had.map(move |collision| Named {
             spec: ShapeSpec {
                 name: collision.name.clone(),
                 vehicle: Some(v),
@@ -66,7 +73,7 @@ fn of_robot<'a>(v: usize, vehicle: &'a str, robot: &'a RobotDescription) -> impl
     })
 }
 
-/// The collision shape of a URDF geometry.
+/// The collision shape of a URDF geometry; a missing one touches nothing.
 pub fn shape_of_geometry(geometry: &Geometry) -> Shape {
     match geometry {
         Geometry::Box { size } => Shape::Cuboid { half_extents: 0.5 * size },
@@ -74,6 +81,7 @@ pub fn shape_of_geometry(geometry: &Geometry) -> Shape {
         Geometry::Cylinder { radius, length } => Shape::Cylinder { radius: *radius, half_length: 0.5 * length },
         Geometry::Capsule { radius, length } => Shape::Capsule { radius: *radius, half_length: 0.5 * length },
         Geometry::Docking(geometry) => Shape::Docking(docking_of_geometry(geometry)),
+        Geometry::Missing(_) => Shape::Bed(Bed::new(Vec::new())),
         Geometry::Mesh(mesh) => Shape::TriMesh {
             vertices: mesh.vertices.iter().map(|v| Vec3::from(*v)).collect(),
             triangles: mesh.triangles.clone(),
@@ -126,7 +134,7 @@ pub(super) fn place_of(
 }
 
 /// A rule that names nothing is a slip of the pen.
-fn check_rules(scenario: &Scenario, shapes: &[Named], faults: &mut Faults<'_>) {
+fn check_rules(scenario: &Scenario, shapes: &[&Named], faults: &mut Faults<'_>) {
     let mut check = |key: String, pattern: &str| {
         let all = || shapes.iter().flat_map(|s| s.names.iter().map(String::as_str));
         if !all().any(|name| crate::glob_matches(pattern, name)) {
@@ -153,14 +161,41 @@ fn check_rules(scenario: &Scenario, shapes: &[Named], faults: &mut Faults<'_>) {
     }
 }
 
+/// A grain and levels that differ across it do nothing without each other.
+fn check_grains(scenario: &Scenario, faults: &mut Faults<'_>) {
+    let differs = |law: &FrictionLaw| matches!(law, FrictionLaw::Bristle(law) if law.across_ratio != 1.0);
+    let by_default = differs(&scenario.contact_default.friction);
+    let needs = "does nothing without a grain; give the [[contact]] grain = { on = …, axis = … }";
+    for (i, rule) in scenario.contacts.iter().enumerate() {
+        let differs = rule.friction.as_ref().map_or(by_default, differs);
+        if rule.grain.is_some() && !differs {
+            let reason =
+                "does nothing where the levels are the same in all directions; give the friction an across_ratio";
+            faults.add(&format!("contact[{i}].grain"), reason);
+        }
+        if rule.grain.is_none() && rule.friction.is_some() && differs {
+            faults.add(&format!("contact[{i}].friction"), format!("across_ratio {needs}"));
+        }
+    }
+    let is_used = |r: &ContactRule| r.grain.is_some() && r.friction.is_none();
+    if by_default && !scenario.contacts.iter().any(is_used) {
+        faults.add("contact_default.friction", format!("across_ratio {needs}"));
+    }
+}
+
 fn law_of_pair(scenario: &Scenario, vehicles: &[VehicleSpec], a: &Named, b: &Named) -> Option<PairLaw> {
     if body_of(vehicles, &a.spec) == body_of(vehicles, &b.spec) {
         return None;
     }
     let (names_a, names_b) = (a.names(), b.names());
     if a.spec.vehicle == b.spec.vehicle {
-        let named = |a: &str| names_b.iter().any(|b| scenario.contacts.iter().any(|r| r.matches(a, b)));
-        names_a.iter().find(|a| named(a))?;
+        let are_joined = a.spec.vehicle.is_some_and(|v| {
+            let tree = &vehicles[v].tree;
+            are_neighbours(tree, tree.links[a.spec.link].body, tree.links[b.spec.link].body)
+        });
+        let is_meant = |r: &ContactRule| !are_joined || !r.between.iter().any(|side| crate::is_glob(side));
+        let names = |r: &ContactRule| names_a.iter().any(|a| names_b.iter().any(|b| r.matches(a, b)));
+        scenario.contacts.iter().find(|r| is_meant(r) && names(r))?;
     }
     let law = scenario.contact_law(&names_a, &names_b);
     let rule = scenario.contact_rule(&names_a, &names_b);
@@ -176,6 +211,11 @@ fn law_of_pair(scenario: &Scenario, vehicles: &[VehicleSpec], a: &Named, b: &Nam
             ..pair_law(&law)
         }
     })
+}
+
+/// Whether one joint holds two bodies of a tree together.
+pub(super) fn are_neighbours(tree: &Tree, a: usize, b: usize) -> bool {
+    a != b && (tree.bodies[a].parent == b || tree.bodies[b].parent == a)
 }
 
 /// A grain in the axes of the body that carries the shape.

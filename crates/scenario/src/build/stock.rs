@@ -5,7 +5,7 @@
 
 use super::Mission;
 use contact::Scene;
-use multibody::{RobotDescription, SearchPaths, UrdfErrors, load_urdf};
+use multibody::{LoadedUrdf, SearchPaths, UrdfErrors, load_urdf};
 use sim::Model;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Robots and shapes, ready to be used again.
 #[derive(Clone, Debug, Default)]
 pub struct Stock {
-    robots: Vec<(PathBuf, Vec<PathBuf>, RobotDescription)>,
+    robots: Vec<(PathBuf, Vec<PathBuf>, LoadedUrdf)>,
     model: Option<Arc<Model>>,
 }
 
@@ -35,7 +35,7 @@ impl Stock {
     }
 
     /// The robot of a file, from the stock or from the disk.
-    pub(super) fn robot(&self, file: &Path, folders: &[PathBuf]) -> Result<RobotDescription, UrdfErrors> {
+    pub(super) fn robot(&self, file: &Path, folders: &[PathBuf]) -> Result<LoadedUrdf, UrdfErrors> {
         match self.robots.iter().find(|(f, p, _)| f == file && p == folders) {
             Some((_, _, robot)) => Ok(robot.clone()),
             None => load_urdf(file, &SearchPaths::new(folders.iter().cloned())),

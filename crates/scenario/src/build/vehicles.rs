@@ -4,25 +4,44 @@ use super::effects::{self, Entry};
 use super::faults::Faults;
 use super::stock::Stock;
 use crate::spec::{BaseAxis, Environment, Scenario, Vehicle};
-use multibody::{RobotDescription, Tree};
+use multibody::{RobotDescription, Tree, UrdfWarnings};
 use sim::VehicleSpec;
 use spatial::Vec3;
 use std::path::PathBuf;
 
-/// Loads every vehicle's robot; `None` if one cannot be had, since nothing else can be checked then.
-pub(super) fn load(
-    scenario: &Scenario,
-    plan: &[Entry<'_>],
-    stock: &Stock,
-    faults: &mut Faults<'_>,
-) -> Option<(Vec<RobotDescription>, effects::NominalComs, Vec<VehicleSpec>)> {
+/// What the vehicles' files hold, one per vehicle.
+pub(super) struct RobotFiles {
+    pub(super) robots: Vec<RobotDescription>,
+    /// What is doubtful in them.
+    pub(super) warnings: Vec<UrdfWarnings>,
+}
+
+/// The vehicles of a scenario, in its order.
+pub(super) struct Loaded {
+    pub(super) files: RobotFiles,
+    pub(super) nominal_coms: effects::NominalComs,
+    pub(super) specs: Vec<VehicleSpec>,
+}
+
+/// Loads every vehicle's robot; `None` if one cannot be had, since nothing else can be checked then. What is wrong with a
+/// file is told where it is first asked for.
+pub(super) fn load(scenario: &Scenario, plan: &[Entry<'_>], stock: &Stock, faults: &mut Faults<'_>) -> Option<Loaded> {
     let dir = scenario.source.file_dir();
-    let mut loaded = Vec::with_capacity(scenario.vehicles.len());
+    let (mut loaded, mut warnings) = (Vec::with_capacity(scenario.vehicles.len()), Vec::new());
+    let mut refused = Vec::new();
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
         let folders: Vec<PathBuf> = vehicle.package_paths.iter().map(|p| dir.join(p)).collect();
-        match stock.robot(&dir.join(&vehicle.urdf), &folders) {
-            Ok(robot) => loaded.push((robot, base(scenario, i, vehicle, faults))),
-            Err(errors) => faults.add(&format!("vehicle[{i}].urdf"), format!("the URDF cannot be used:\n{errors}")),
+        let asked = (dir.join(&vehicle.urdf), folders);
+        match stock.robot(&asked.0, &asked.1) {
+            Ok(found) => {
+                loaded.push((found.robot, base(scenario, i, vehicle, faults)));
+                warnings.push(found.warnings);
+            }
+            Err(_) if refused.contains(&asked) => {}
+            Err(errors) => {
+                faults.add(&format!("vehicle[{i}].urdf"), format!("the URDF cannot be used:\n{errors}"));
+                refused.push(asked);
+            }
         }
     }
     if loaded.len() < scenario.vehicles.len() {
@@ -38,7 +57,7 @@ pub(super) fn load(
         base,
     };
     let specs = scenario.vehicles.iter().zip(robots.iter().zip(bases)).map(spec).collect();
-    Some((robots, nominal_coms, specs))
+    Some(Loaded { files: RobotFiles { robots, warnings }, nominal_coms, specs })
 }
 
 fn base(scenario: &Scenario, i: usize, vehicle: &Vehicle, faults: &mut Faults<'_>) -> sim::Base {

@@ -17,8 +17,6 @@ pub(super) struct PairRecord {
 pub(super) struct ContactWatch {
     pub(super) first_contact: Option<f64>,
     pub(super) last_contact: Option<f64>,
-    /// Sum of the forces in the last step, N.
-    pub(super) force: f64,
     pub(super) peak_force: f64,
     pub(super) peak_time: Option<f64>,
     pub(super) impulse: f64,
@@ -50,7 +48,6 @@ impl ContactWatch {
                 record.now = 0.0;
             }
         }
-        self.force = force;
         if !pressed {
             return None;
         }

@@ -5,6 +5,7 @@
 //!   axial p_z, lateral √(p_x² + p_y²), tilt between −z_F and z_P, roll about z_P,     closing −ṗ_z, all as P sees them
 
 use super::Metric;
+use super::interface::Interface;
 use crate::spec::Docking;
 use record::{Event, EventKind};
 use serde_json::Value;
@@ -60,6 +61,8 @@ pub(super) struct DockingWatch {
     overload_at: Option<f64>,
     left_at: Option<f64>,
     engaged: Vec<(String, Option<f64>)>,
+    interface: Interface,
+    peak_force: f64,
 }
 
 impl DockingWatch {
@@ -69,7 +72,10 @@ impl DockingWatch {
         let capture: Vec<usize> = spec.capture.iter().filter_map(index).collect();
         let hard_dock: Vec<usize> = spec.hard_dock.iter().filter_map(index).collect();
         let engaged = spec.capture.iter().chain(&spec.hard_dock).map(|n| (n.clone(), None)).collect();
+        let latches: Vec<usize> = capture.iter().chain(&hard_dock).copied().collect();
         Some(Self {
+            interface: Interface::new(model, ends[0].0, ends[1].0, &latches),
+            peak_force: 0.0,
             spec: spec.clone(),
             ends,
             capture,
@@ -86,9 +92,11 @@ impl DockingWatch {
         })
     }
 
-    /// Looks at the world; `touched` at the first contact, `force` is the sum of contact forces. Says when all is decided.
-    pub(super) fn observe(&mut self, world: &World, (touched, force): (bool, f64), events: &mut Vec<Event>) -> Flow {
+    /// Looks at the world; `touched` at the first contact. Says when all is decided.
+    pub(super) fn observe(&mut self, world: &World, touched: bool, events: &mut Vec<Event>) -> Flow {
         let (now, time) = (self.calc_relative(world), world.state().time);
+        let force = self.interface.calc_force(world).norm();
+        self.peak_force = self.peak_force.max(force);
         let mut note = |kind, text: String| events.push(Event { t: time, step: world.state().steps, kind, text });
         if touched {
             self.at_contact = Some(now);
@@ -96,7 +104,7 @@ impl DockingWatch {
         self.nearest = self.nearest.min(now.distance);
         if self.overload_at.is_none() && self.spec.overload_n.is_some_and(|limit| force > limit) {
             self.overload_at = Some(time);
-            note(EventKind::Loss, format!("overload: {force:.0} N of contact force"));
+            note(EventKind::Loss, format!("overload: {force:.0} N between the two sides"));
         }
         let all = |list: &[usize]| !list.is_empty() && list.iter().all(|m| holds(world, *m));
         let seated = |list: &[usize]| all(list) && list.iter().all(|m| is_seated(world, *m));
@@ -173,7 +181,7 @@ impl DockingWatch {
         }
         if let Some(at) = overload {
             let limit = self.spec.overload_n.unwrap_or(f64::INFINITY);
-            return ("overload", format!("contact forces passed {limit:.0} N at t = {at:.2} s"));
+            return ("overload", format!("the force between the two sides passed {limit:.0} N at t = {at:.2} s"));
         }
         if let Some(at) = self.captured_at {
             return ("captured", self.tell_capture(at));
@@ -242,6 +250,11 @@ impl DockingWatch {
             "speed of the visitor's base as the port's vehicle sees it, at the end",
         );
         add("residual_rate_deg_per_s", now.rate.to_degrees().into(), "angular rate between the two bases at the end");
+        add(
+            "peak_interface_force_n",
+            self.peak_force.into(),
+            "largest resultant of contact and latches between the two sides",
+        );
         add("nearest_m", self.nearest.into(), "least distance of the interface frames");
     }
 }

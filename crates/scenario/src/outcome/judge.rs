@@ -5,14 +5,16 @@ use super::capture::CaptureWatch;
 use super::contacts::ContactWatch;
 use super::creep::CreepGauge;
 use super::docking::DockingWatch;
+use super::energy::EnergyWatch;
 use super::keep_out::KeepOutWatch;
 use super::mechanisms::MechanismWatch;
+use super::motors::MotorWatch;
 use super::{Metric, Outcome};
 use crate::build::Mission;
 use crate::spec::{Scenario, Strategy};
 use record::{Event, EventKind};
 use serde_json::Value;
-use sim::{Energy, Flow, MomentumAudit, Observer, StepError, World};
+use sim::{Flow, MomentumAudit, Observer, StepError, World};
 
 /// Steps between two entries of the momentum audit.
 const AUDIT_EVERY: u64 = 100;
@@ -27,8 +29,9 @@ pub struct Judge {
     keep_out: Option<KeepOutWatch>,
     creep: CreepGauge,
     mechanisms: MechanismWatch,
+    motors: MotorWatch,
     audit: Option<MomentumAudit>,
-    energy_start: Energy,
+    energy: EnergyWatch,
     events: Vec<Event>,
 }
 
@@ -49,8 +52,9 @@ impl Judge {
             keep_out: KeepOutWatch::new(&scenario.keep_out, model),
             creep: CreepGauge::new(mission.steps, world.model().step),
             mechanisms: MechanismWatch::new(world),
+            motors: MotorWatch::new(scenario, world),
             audit: MomentumAudit::applies(world).then(|| MomentumAudit::new(world)),
-            energy_start: Energy::of(world),
+            energy: EnergyWatch::new(world),
             events: Vec::new(),
         }
     }
@@ -60,13 +64,13 @@ impl Judge {
         &self.events
     }
 
-    /// Whether this step brought the first contact, and the sum of its contact forces, N.
-    fn observe_contact(&mut self, world: &World) -> (bool, f64) {
-        let Some(pair) = self.contacts.observe(world) else { return (false, self.contacts.force) };
+    /// Whether this step brought the first contact.
+    fn observe_contact(&mut self, world: &World) -> bool {
+        let Some(pair) = self.contacts.observe(world) else { return false };
         let (time, step) = (world.state().time, world.state().steps);
         let text = format!("first contact: {pair}");
         self.events.push(Event { t: time, step, kind: EventKind::Contact, text });
-        (true, self.contacts.force)
+        true
     }
 
     /// What became of the run.
@@ -80,8 +84,9 @@ impl Judge {
             (Ok(()), None, Some(docking)) => docking.conclude(world, self.contacts.last_contact),
             (Ok(()), None, None) => ("completed", "the run came to its end".to_owned()),
         };
-        let metrics = self.calc_metrics(world, outcome);
-        Outcome { outcome, reason, metrics, events: self.events }
+        let mut metrics = self.calc_metrics(world, outcome);
+        let warnings = self.energy.add_metrics(world, &mut metrics).into_iter().collect();
+        Outcome { outcome, reason, metrics, events: self.events, warnings }
     }
 
     fn calc_metrics(&self, world: &World, outcome: &str) -> Vec<Metric> {
@@ -135,11 +140,12 @@ impl Judge {
         }
         self.contacts.add_metrics(world.model(), &mut metrics);
         self.mechanisms.add_metrics(world, &mut metrics);
-        self.add_accounts(world, &mut metrics);
+        self.motors.add_metrics(&mut metrics);
+        self.add_momentum_drift(&mut metrics);
         metrics
     }
 
-    fn add_accounts(&self, world: &World, metrics: &mut Vec<Metric>) {
+    fn add_momentum_drift(&self, metrics: &mut Vec<Metric>) {
         let mut add = |name: &'static str, value: f64, meaning| {
             metrics.push(Metric { name: name.into(), value: value.into(), meaning });
         };
@@ -149,22 +155,12 @@ impl Judge {
                 audit.linear_drift,
                 "drift of linear momentum over the largest Σ m‖v‖, from the links",
             );
-            add("momentum_drift_angular", audit.angular_drift, "drift of angular momentum over the largest Σ ‖L_link‖");
+            add(
+                "momentum_drift_angular",
+                audit.angular_drift,
+                "drift of angular momentum over the largest Σ (lever × m‖v‖ + spin)",
+            );
         }
-        let (now, account) = (Energy::of(world), world.state().account);
-        let change = now.kinetic - self.energy_start.kinetic + now.potential - self.energy_start.potential;
-        let external = if world.model().environment.is_still() { account.external_work } else { 0.0 };
-        let work = account.actuator_work
-            + account.passive_joint_work
-            + account.contact_work
-            + account.mechanism_work
-            + account.effect_work
-            + external;
-        add("kinetic_energy_j", now.kinetic, "at the end");
-        add("actuator_work_j", account.actuator_work, "work of the joint actuators");
-        add("contact_work_j", account.contact_work, "work of contact forces: negative, stored or dissipated");
-        add("joint_loss_j", account.passive_joint_work, "work of joint damping, friction and stops");
-        add("integrator_energy_j", change - work, "change of energy that no force explains: the integrator's own");
     }
 }
 
@@ -174,9 +170,9 @@ fn optional(value: Option<f64>) -> Value {
 
 impl Observer for Judge {
     fn observe(&mut self, world: &World) -> Flow {
-        let contact = if world.state().steps > 0 { self.observe_contact(world) } else { (false, 0.0) };
+        let touched = world.state().steps > 0 && self.observe_contact(world);
         let flow = match &mut self.docking {
-            Some(docking) => docking.observe(world, contact, &mut self.events),
+            Some(docking) => docking.observe(world, touched, &mut self.events),
             None => Flow::Continue,
         };
         if let Some(host) = &mut self.host {
@@ -189,6 +185,7 @@ impl Observer for Judge {
             capture.observe(world, &mut self.events);
         }
         self.mechanisms.observe(world, &mut self.events);
+        self.motors.observe(world, &mut self.events);
         self.creep.observe(world);
         if world.state().steps.is_multiple_of(AUDIT_EVERY)
             && let Some(audit) = &mut self.audit

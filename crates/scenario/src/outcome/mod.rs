@@ -5,10 +5,13 @@ mod capture;
 mod contacts;
 mod creep;
 mod docking;
+mod energy;
 mod expect;
+mod interface;
 mod judge;
 mod keep_out;
 mod mechanisms;
+mod motors;
 
 pub(crate) use docking::calc_base_motion;
 pub use expect::{Verdict, check_expectations};
@@ -40,6 +43,8 @@ pub struct Outcome {
     pub metrics: Vec<Metric>,
     /// Events in order of time.
     pub events: Vec<Event>,
+    /// What a reader of the figures must know, in sentences with a way out.
+    pub warnings: Vec<String>,
 }
 
 impl Outcome {

@@ -21,7 +21,7 @@ pub struct Actuator {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ActuatorKind {
-    /// The command is the joint's torque, N·m, or force, N.
+    /// The command is the joint's torque, N·m, or force, N; at the URDF's velocity limit it no longer pushes.
     #[schemars(extend("x-at-most-one" = [["limit_n_m", "limit_n"], ["reflected_inertia_kg_m2", "reflected_mass_kg"]]))]
     JointTorque {
         /// The joint, as `vehicle/joint`.
@@ -44,7 +44,8 @@ pub enum ActuatorKind {
         #[schemars(range(min = 0.0))]
         reflected_mass_kg: Option<f64>,
     },
-    /// A position and rate loop: τ = k (q_cmd − q) + d (q̇_cmd − q̇), within the limit.
+    /// A position and rate loop: τ = k (q_cmd − q) + d (q̇_cmd − q̇), within the limit; at the URDF's velocity limit it
+    /// no longer pushes.
     JointDrive(JointDrive),
     /// The command is the thrust, N, between zero and `max_force_n`.
     Thruster {
@@ -74,7 +75,7 @@ pub enum ActuatorKind {
         /// Largest torque of the motor, N·m.
         #[schemars(extend("exclusiveMinimum" = 0.0))]
         torque_limit_n_m: f64,
-        /// Speed at which the motor stops pushing, rad/s.
+        /// Speed relative to the link at which the motor stops pushing, in that direction, rad/s; it still brakes.
         #[schemars(extend("exclusiveMinimum" = 0.0))]
         speed_limit_rad_per_s: f64,
         /// Speed of the rotor relative to the link at t = 0, rad/s.

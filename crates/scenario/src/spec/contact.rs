@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactRule {
-    /// The two sides, each a shape or link as `vehicle/name`, or a glob; the order does not matter.
+    /// The two sides, each a shape or link as `vehicle/name`, or a glob; the order does not matter. Links that one joint holds
+    /// together touch only where both sides name them without a glob.
     #[schemars(extend("x-refers" = "pattern"))]
     pub between: [String; 2],
     /// Whether the pair touches at all; `false` also saves the time of looking.
@@ -23,7 +24,7 @@ pub struct ContactRule {
     /// Friction law; that of `[contact_default]` where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<FrictionLaw>,
-    /// The direction along which the friction levels are meant, for a law with `across_ratio`.
+    /// The direction along which the friction levels are meant, for a law with `across_ratio` other than 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grain: Option<Grain>,
     /// Resistance of every single point to spinning and rolling, where no patch of points carries it.

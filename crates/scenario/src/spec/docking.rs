@@ -68,7 +68,7 @@ pub struct Docking {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-refers" = "mechanism"))]
     pub hard_dock: Vec<String>,
-    /// Sum of contact forces in a step above which the interface is damaged, N; any where absent.
+    /// Resultant force between the two sides, latches included, above which the interface is damaged, N; any where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub overload_n: Option<f64>,

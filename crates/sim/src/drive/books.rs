@@ -6,7 +6,7 @@
 
 use super::calc_gain;
 use crate::model::{Base, Model};
-use crate::state::{Account, State};
+use crate::state::State;
 use crate::workspace::Workspace;
 use multibody::{Accelerations, calc_momentum};
 use spatial::{Twist, Wrench};
@@ -33,11 +33,11 @@ pub(crate) fn begin(model: &Model, state: &State, ws: &mut Workspace, h: f64) {
 
 /// Books the step that has ended.
 pub(crate) fn add_step(model: &Model, state: &mut State, ws: &Workspace) {
-    for (start, drive) in ws.drive_start.iter().zip(&model.drives) {
+    for ((start, drive), work) in ws.drive_start.iter().zip(&model.drives).zip(model.actuators.len()..) {
         let end = calc_start(state, ws, drive.vehicle);
         let impulse = (end.momentum - start.momentum) - (end.given - start.given);
         state.account.impulse += impulse;
-        state.account.drive_work += ((start.twist + end.twist) * 0.5).dot(&impulse);
+        state.works[work] += ((start.twist + end.twist) * 0.5).dot(&impulse);
     }
 }
 
@@ -51,21 +51,15 @@ fn calc_start(state: &State, ws: &Workspace, v: usize) -> DriveStart {
     }
 }
 
-/// Books a stage: `given` are the rates of momentum that others give, `v_dot` the rates of the joints' rates.
-pub(crate) fn add_rates(
-    model: &Model,
-    state: &State,
-    ws: &mut Workspace,
-    (given, account): (&[Wrench], &mut Account),
-    v_dot: &[f64],
-) {
-    for drive in &model.drives {
+/// Books a stage, in rates: `given` are those of the momentum that others give, `v_dot` those of the joints' rates.
+pub(crate) fn add_rates(model: &Model, state: &mut State, ws: &mut Workspace, given: &[Wrench], v_dot: &[f64]) {
+    for (drive, work) in model.drives.iter().zip(model.actuators.len()..) {
         let v = drive.vehicle;
         let own = calc_momentum_rate(model, state, ws, v, v_dot);
         let force = own - given[v];
-        account.impulse += force;
+        state.account.impulse += force;
         let kin = &ws.kin[v];
-        account.drive_work += kin.vel[0].about(&-kin.anchor).dot(&force);
+        state.works[work] += kin.vel[0].about(&-kin.anchor).dot(&force);
     }
 }
 

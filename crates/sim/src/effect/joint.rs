@@ -198,14 +198,18 @@ impl JointEffect {
         }
     }
 
+    /// Whether what it does is a potential, in [`Self::calc_energy`]; else its work is booked.
+    pub(crate) fn stores(&self) -> bool {
+        matches!(self.law, JointLaw::Cable { .. } | JointLaw::Ripple { .. })
+    }
+
     /// What its spring holds, J.
     pub(super) fn calc_energy(&self, q: f64) -> f64 {
         match self.law {
             JointLaw::Cable { stiffness, rest } => 0.5 * stiffness * (q - rest) * (q - rest),
-            JointLaw::Ripple { amplitude, order, phase } if order != 0.0 => {
-                amplitude / order * (order * q + phase).cos()
-            }
-            _ => 0.0,
+            JointLaw::Ripple { amplitude, order: 0.0, phase } => -amplitude * phase.sin() * q,
+            JointLaw::Ripple { amplitude, order, phase } => amplitude / order * (order * q + phase).cos(),
+            JointLaw::Viscous { .. } | JointLaw::Dry(_) | JointLaw::Periodic { .. } => 0.0,
         }
     }
 }

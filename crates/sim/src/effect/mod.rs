@@ -27,6 +27,8 @@ pub use line::{LineEffect, LineLaw};
 pub use memory::{MemorySlot, memory_layout};
 pub use series::Series;
 
+pub(crate) use series::Shaft;
+
 pub(crate) use body::{Parts, add_impulses, calc_carried, calc_carried_linear, drift_to_midpoint, particles};
 pub(crate) use line::{Lines, accept, next_switch};
 pub(crate) use memory::{calc_relative, is_blank, rest_parts, set_relative};
@@ -38,7 +40,7 @@ use crate::state::State;
 use crate::step::{Scheme, calc_bias, calc_external};
 use crate::workspace::Workspace;
 use multibody::Kinematics;
-use spatial::{Vec3, Wrench};
+use spatial::{Twist, Vec3, Wrench};
 use std::ops::Range;
 
 /// Physics beyond the nominal model.
@@ -165,9 +167,9 @@ pub(crate) struct Acting<'a> {
     pub since: Option<f64>,
 }
 
-impl Acting<'_> {
+impl<'a> Acting<'a> {
     /// Memory of an effect.
-    pub fn memory(&self, index: usize) -> &[f64] {
+    pub fn memory(&self, index: usize) -> &'a [f64] {
         &self.state.effects[self.model.effects.memory(index)]
     }
 }
@@ -182,6 +184,21 @@ pub(crate) fn add_wrenches(model: &Model, state: &State, ws: &mut Workspace) {
         }
     }
     body::eval(model, state, ws);
+}
+
+/// Works of the effects on bodies, with the twists that displace these.
+pub(crate) fn add_works(model: &Model, state: &mut State, ws: &Workspace, twist_of: impl Fn(usize) -> Twist, h: f64) {
+    for (index, effect) in model.effects.list.iter().enumerate() {
+        if let EffectKind::Tilt(tilt) = &effect.kind {
+            let power = |(body, &(vehicle, local)): (usize, &(usize, usize))| {
+                let inertia = &ws.kin[vehicle].inertia[local];
+                twist_of(body).dot(&Wrench::new(inertia.mc.cross(tilt), inertia.mass * tilt))
+            };
+            let power: f64 = model.owners.iter().enumerate().map(power).sum();
+            state.works[model.work_of_effect(index)] += h * power;
+        }
+    }
+    body::add_works(model, state, ws, twist_of, h);
 }
 
 /// Whether forces on bodies must be evaluated again once the mean velocities of a step are known.

@@ -9,6 +9,9 @@
 //! Runge–Kutta integrates both. The one-solve schemes solve the motor together with the joint, linearly implicit with
 //! the law checked: for a new rate v' of the joint, ω' follows from B (ω' − ω) = h (u' − τ'), piecewise linear, by
 //! Newton's method, and  −∂τ/∂v' = s (B + h s_u)/(B + h (s_u + s)),  s = k β + d θ,  enters the matrix: stable at any k.
+//!
+//! A speed limit L (see [`crate::speed_limit`]) is the motor's: a step that would turn it faster ends at ω' = L, with the
+//! effort u = B (L − ω)/h + τ' that leads there, as long as that is between nothing and what was asked; else with u = 0.
 
 use super::Acting;
 use crate::actuator::{CoordinateForce, CoordinatePoint};
@@ -37,10 +40,19 @@ pub(crate) struct Motor {
     pub slope: f64,
     /// Effort of the actuators on the rotor.
     pub driven: f64,
-    /// Mean rate of the rotor over the step; at an explicit stage its rate there.
-    pub rate: f64,
-    /// Its rate at the end of a one-solve step.
+    /// Rate of the rotor at the end of a one-solve step.
     rate_end: f64,
+}
+
+/// What a motor's step depends on beside its joint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shaft<'a> {
+    /// Deflection and its rate.
+    pub memory: &'a [f64],
+    /// Length of the step, s.
+    pub step: f64,
+    /// Rate at which the motor stops pushing, rad/s or m/s.
+    pub speed_limit: f64,
 }
 
 /// Most Newton steps for the motor's rate; a piecewise linear law needs as many as it has corners, and one.
@@ -70,20 +82,37 @@ impl Series {
         &self,
         at: &CoordinatePoint,
         v_new: f64,
-        (memory, step): (&[f64], f64),
+        shaft: &Shaft<'_>,
         drive: impl Fn(&CoordinatePoint, f64, f64) -> (f64, f64),
     ) -> Motor {
+        let limit = shaft.speed_limit;
+        let motor = self.turn(at, v_new, shaft, &drive);
+        let asked = motor.driven;
+        if asked.signum() * motor.rate_end <= limit {
+            return motor;
+        }
+        let held = self.turn_to(at, v_new, shaft, limit.copysign(asked));
+        if held.driven * asked >= 0.0 { held } else { self.turn(at, v_new, shaft, &|_, _, _| (0.0, 0.0)) }
+    }
+
+    /// The motor under what its drive gives.
+    fn turn(
+        &self,
+        at: &CoordinatePoint,
+        v_new: f64,
+        shaft: &Shaft<'_>,
+        drive: &impl Fn(&CoordinatePoint, f64, f64) -> (f64, f64),
+    ) -> Motor {
+        let &Shaft { memory, step, .. } = shaft;
         let (x_start, w_start) = (memory[0], memory[1]);
         let omega = at.v_start + w_start;
         if at.theta == 0.0 {
             let (driven, _) = drive(at, at.q_base + x_start, omega);
             let (effort, _) = self.eval_law(x_start, w_start);
             let rate_end = omega + step * (driven - effort) / self.rotor;
-            return Motor { effort, slope: 0.0, driven, rate: omega, rate_end };
+            return Motor { effort, slope: 0.0, driven, rate_end };
         }
-        let carried = if at.theta == 1.0 { 0.0 } else { at.beta * omega };
-        let x_base = x_start + carried - at.moved_base - at.beta * v_new;
-        let theta_base = at.q_base + x_start + carried - at.moved_base;
+        let (x_base, theta_base) = self.bases(at, v_new, memory);
         let mut rate_end = omega + v_new - at.v_start;
         let (mut effort, mut driven, mut spring, mut by_drive) = (0.0, 0.0, 0.0, 0.0);
         for _ in 0..MAX_STEPS {
@@ -104,7 +133,32 @@ impl Series {
         }
         let held = self.rotor + step * by_drive;
         let slope = spring * held / (held + step * spring);
-        Motor { effort, slope, driven, rate: 0.5 * (omega + rate_end), rate_end }
+        Motor { effort, slope, driven, rate_end }
+    }
+
+    /// The motor that ends the step at a rate, with the effort on the rotor that takes.
+    fn turn_to(&self, at: &CoordinatePoint, v_new: f64, shaft: &Shaft<'_>, rate_end: f64) -> Motor {
+        let &Shaft { memory, step, .. } = shaft;
+        let omega = at.v_start + memory[1];
+        let (x, rate, link_rate) = if at.theta == 0.0 {
+            (memory[0], omega, at.v_start)
+        } else {
+            let mean = |start: f64, end: f64| (1.0 - at.theta) * start + at.theta * end;
+            let x = self.bases(at, v_new, memory).0 + at.beta * rate_end;
+            (x, mean(omega, rate_end), mean(at.v_start, v_new))
+        };
+        let (effort, engaged) = self.eval_law(x, rate - link_rate);
+        let slope = if engaged { self.stiffness * at.beta + self.damping * at.theta } else { 0.0 };
+        let driven = effort + self.rotor * (rate_end - omega) / step;
+        Motor { effort, slope, driven, rate_end }
+    }
+
+    /// Deflection and motor position at the evaluated point, less β times the motor's new rate.
+    fn bases(&self, at: &CoordinatePoint, v_new: f64, memory: &[f64]) -> (f64, f64) {
+        let omega = at.v_start + memory[1];
+        let carried = if at.theta == 1.0 { 0.0 } else { at.beta * omega };
+        let x_base = memory[0] + carried - at.moved_base - at.beta * v_new;
+        (x_base, at.q_base + memory[0] + carried - at.moved_base)
     }
 
     pub(super) fn write_rates(&self, memory: &[f64], force: &CoordinateForce, v_dot: f64, rates: &mut [f64]) {
@@ -123,7 +177,7 @@ impl Series {
     ) -> [f64; 2] {
         let (memory, coordinate) = (acting.memory(index), &acting.model.coordinates[self.coordinate]);
         let drive = |at: &CoordinatePoint, q: f64, v: f64| coordinate.drive(at, (q, v), acting);
-        let motor = self.eval(at, v_new, (memory, acting.step), drive);
+        let motor = self.eval(at, v_new, &coordinate.shaft(index, acting), drive);
         let rate = motor.rate_end - v_new;
         let mean = if scheme == Scheme::ImplicitMidpoint { 0.5 * (memory[1] + rate) } else { rate };
         [memory[0] + acting.step * mean, rate]
@@ -132,6 +186,12 @@ impl Series {
     /// Deflection that carries a load at rest, rad or m.
     pub(super) fn calc_rest(&self, load: f64) -> f64 {
         if load == 0.0 { 0.0 } else { load / self.stiffness + (0.5 * self.gap).copysign(load) }
+    }
+
+    /// Power that its damper takes at a deflection and its rate, W.
+    pub(crate) fn calc_loss(&self, [x, rate]: [f64; 2]) -> f64 {
+        let is_engaged = x.abs() > 0.5 * self.gap || self.gap == 0.0;
+        if is_engaged { self.damping * rate * rate } else { 0.0 }
     }
 
     /// In the spring and in the rotor, J.

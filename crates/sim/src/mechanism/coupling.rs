@@ -228,7 +228,7 @@ pub(crate) fn update_carried(model: &Model, ws: &mut Workspace) {
 pub(crate) fn add_stiffness(model: &Model, ws: &mut Workspace, h: f64) {
     for coupling in &ws.couplings {
         for (k, body) in coupling.bodies.into_iter().enumerate().filter(|(_, b)| *b < model.owners.len()) {
-            ws.extra[body] += coupling.calc_matrix(k, k, h);
+            *ws.extra[body].get_or_insert_default() += coupling.calc_matrix(k, k, h);
         }
     }
 }
@@ -304,8 +304,8 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         let gain = coupling.calc_gain(ws);
         for (i, gain) in gain.iter().enumerate().take(coupling.at.n) {
             let force = h * coupling.force[i];
-            state.account.mechanism_work += force * (coupling.rate[i] + 0.5 * gain);
-            state.account.actuator_work -= force * coupling.at.rest_rate[i];
+            state.account.mechanism_work += force * (coupling.rate[i] + ws.gain_share * gain);
+            state.account.pull_in_work -= force * coupling.at.rest_rate[i];
             state.account.mechanism_loss += h * coupling.law[i].loss;
         }
     }

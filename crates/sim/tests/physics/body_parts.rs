@@ -252,7 +252,7 @@ fn a_falling_tank_does_not_slosh() {
     run(&mut world, 1000);
     audit.update(&world);
     assert!((total(&world) - start).abs() < 1e-9, "some 2 kJ of fall come back as motion");
-    assert!((world.state().account.external_work - 0.5 * 45.0 * 9.81 * 9.81).abs() < 1e-9);
+    assert!((world.state().account.environment_work - 0.5 * 45.0 * 9.81 * 9.81).abs() < 1e-9);
     assert!(world.effect_memory().iter().all(|x| x.abs() < 1e-12));
     assert!((world.state().account.impulse.force.z + 45.0 * 9.81).abs() < 1e-9, "the particle's weight counts");
     assert!(audit.linear_drift < 1e-12);

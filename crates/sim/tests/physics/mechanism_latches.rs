@@ -207,16 +207,18 @@ fn pull_in_leads_the_block_to_nominal_and_its_motor_pays() {
         let pulls = Latch { pull_in: Some(PullIn { speed: 0.02, turn_rate: 0.1 }), ..latch() };
         let mut world = approach(pulls, GOOD, &Setup::new(integrator).step(2e-4));
         run_until_change(&mut world).unwrap();
-        let books = crate::support::mechanisms::calc_books(&world);
+        let mut books = sim::EnergyAudit::new(&world);
         run(&mut world, 20_000);
         let pose = world.state().bases[0] * Pose::translation(0.0, 0.0, -0.2);
         let off = (pose.translation.vector.norm(), pose.rotation.scaled_axis().norm());
-        println!("{integrator:?}: {off:?}, motor {:.2e} J", world.state().account.actuator_work);
+        println!("{integrator:?}: {off:?}, motor {:.2e} J", world.state().account.pull_in_work);
         assert!(off.0 < 1e-8 && off.1 < 1e-8, "{integrator:?}: {off:?}");
-        assert!(world.state().account.actuator_work != 0.0);
-        let drift = crate::support::mechanisms::calc_books(&world) - books;
-        // Works at mean velocities against kinetic energy from momentum: second order in the step.
-        assert!(drift.abs() < 1e-5 * 0.01, "{integrator:?}: {drift:e} J");
+        assert!(world.state().account.pull_in_work != 0.0);
+        let drift = books.close(&world).numerical_loss;
+        // Of 0.01 J: what the swinging in the hold loses to a first-order step, and to the others.
+        let is_first_order = matches!(integrator, Integrator::ImplicitEuler | Integrator::SemiImplicitEuler);
+        let bound = if is_first_order { 5e-4 } else { 1e-7 };
+        assert!(drift.abs() < bound, "{integrator:?}: {drift:e} J");
     }
 }
 

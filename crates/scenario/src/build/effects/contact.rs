@@ -8,7 +8,7 @@ use super::{Entry, Parts};
 use crate::build::faults::Faults;
 use crate::effects::EffectName;
 use contact::{Docking, NormalLaw, Shape};
-use friction::{Bristle, Friction, Return};
+use friction::{Bristle, Friction};
 use multibody::RobotDescription;
 use sim::{Grain, PairLaw};
 use spatial::{Pose, Vec3, nalgebra};
@@ -142,7 +142,7 @@ fn set_ellipse(law: &mut Bristle, along: f64, across: f64) -> Result<(), String>
         return Err("needs mu_1 above zero: turn the angle by 90 deg and exchange the levels".to_owned());
     }
     law.mu_static = if law.mu_static == law.mu_kinetic { along } else { law.mu_static * (along / law.mu_kinetic) };
-    (law.mu_kinetic, law.across, law.way) = (along, across / along, Return::Radial);
+    (law.mu_kinetic, law.across) = (along, across / along);
     Ok(())
 }
 

@@ -25,8 +25,8 @@ pub use slosh::Slosh;
 pub use sphere::Sphere;
 
 pub(crate) use part::{
-    Parts, add_impulses, advance, calc_carried, calc_carried_linear, calc_energy, calc_motion, drift_to_midpoint, eval,
-    find_place, of_bodies, particles, rest,
+    Parts, add_impulses, add_works, advance, calc_carried, calc_carried_linear, calc_energy, calc_motion,
+    drift_to_midpoint, eval, find_place, of_bodies, particles, rest,
 };
 
 use spatial::{Frame, Inertia, Mat3, Vec3, Wrench};

@@ -19,7 +19,7 @@ use crate::state::State;
 use crate::step::Scheme;
 use crate::workspace::{Workspace, world_wrench};
 use multibody::Kinematics;
-use spatial::{Inertia, Vec3, Wrench};
+use spatial::{Inertia, Twist, Vec3, Wrench};
 
 /// Scratch of the body effects.
 #[derive(Clone, Debug, Default)]
@@ -30,13 +30,23 @@ pub(crate) struct Parts {
     pub internal: Vec<Wrench>,
     /// Per vehicle, about its anchor: weight of the parts.
     weight: Vec<Wrench>,
-    /// Power of that weight, and what dampers take, W.
+    /// Power of that weight, W.
     power: f64,
-    loss: f64,
+    /// What every effect does to its body from outside, and what its part's damper takes, W.
+    actions: Vec<Action>,
     /// Of [`State::effects`]; only the parts' own entries are used.
     pub rates: Vec<f64>,
     /// The memory at the start of a midpoint step.
     start: Vec<f64>,
+}
+
+/// What one effect does to its body, about the anchor of the body's vehicle.
+#[derive(Clone, Copy, Debug)]
+struct Action {
+    effect: usize,
+    body: usize,
+    external: Wrench,
+    loss: f64,
 }
 
 impl Parts {
@@ -47,7 +57,7 @@ impl Parts {
             internal: vec![Wrench::default(); model.owners.len()],
             weight: vec![Wrench::default(); model.vehicles.len()],
             power: 0.0,
-            loss: 0.0,
+            actions: Vec::with_capacity(model.effects.list.len()),
             rates: vec![0.0; n],
             start: vec![0.0; n],
         }
@@ -105,7 +115,8 @@ fn eval_parts(model: &Model, state: &State, ws: &mut Workspace, mut push: impl F
     let mut parts = std::mem::take(&mut ws.parts);
     parts.internal.fill(Wrench::default());
     parts.weight.fill(Wrench::default());
-    (parts.power, parts.loss) = (0.0, 0.0);
+    parts.power = 0.0;
+    parts.actions.clear();
     for (index, effect) in of_bodies(model) {
         let BodyPlace { vehicle, link, .. } = effect.place;
         let kin = &ws.kin[vehicle];
@@ -117,16 +128,17 @@ fn eval_parts(model: &Model, state: &State, ws: &mut Workspace, mut push: impl F
         let action = effect.law.eval(&effect.place, &motion, memory, &field, &mut parts.rates[at]);
         let to_anchor = kin.anchor - motion.frame_wl.pos;
         let body = model.vehicles[vehicle].body0 + model.vehicles[vehicle].tree.links[link].body;
-        push(body, action.external.about(&to_anchor));
+        let external = action.external.about(&to_anchor);
+        push(body, external);
+        parts.actions.push(Action { effect: index, body, external, loss: action.loss });
         parts.internal[body] += action.internal.about(&to_anchor);
         parts.weight[vehicle] += action.on_part.about(&to_anchor);
         parts.power += particle.map_or(0.0, |(_, _, v)| action.on_part.force.dot(&v));
-        parts.loss += action.loss;
     }
     ws.parts = parts;
 }
 
-/// What the parts weigh joins the momentum, and what their dampers take the account.
+/// What the parts weigh joins the momentum, and its work the account.
 pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: f64) {
     if !ws.parts.has_parts {
         return;
@@ -136,13 +148,16 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         state.momentum[i] += impulse;
         state.account.impulse += impulse;
     }
-    state.account.external_work += h * ws.parts.power;
-    for (body, internal) in ws.parts.internal.iter().enumerate() {
-        let (vehicle, local) = model.owners[body];
-        let mean = ws.kin[vehicle].vel[local] + ws.dvel[body] * 0.5;
-        state.account.effect_work += h * mean.dot(internal);
+    state.account.environment_work += h * ws.parts.power;
+}
+
+/// Works of the loads from outside, with the twists that displace the bodies; what the parts' dampers take.
+pub(crate) fn add_works(model: &Model, state: &mut State, ws: &Workspace, twist_of: impl Fn(usize) -> Twist, h: f64) {
+    for action in &ws.parts.actions {
+        let work = h * (twist_of(action.body).dot(&action.external) - action.loss);
+        state.works[model.work_of_effect(action.effect)] += work;
+        state.account.effect_loss += h * action.loss;
     }
-    state.account.effect_loss += h * ws.parts.loss;
 }
 
 /// Momentum of the parts inside a vehicle's bodies, about its anchor, W axes.

@@ -2,7 +2,7 @@
 
 use super::{Setup, joint, link, robot, spec, world};
 use multibody::{JointKind, Tree};
-use sim::{Account, Actuator, ActuatorKind, Base, Effect, EffectKind, Energy, JointEffect, JointLaw, ModelSpec, World};
+use sim::{Actuator, ActuatorKind, Base, Effect, EffectKind, JointEffect, JointLaw, ModelSpec, World};
 use spatial::Vec3;
 
 /// Of the wheel about its axle, kg·m².
@@ -30,12 +30,4 @@ pub(crate) fn wheel_world(kinds: &[EffectKind], setup: &Setup) -> World {
 
 pub(crate) fn on_joint(law: JointLaw) -> EffectKind {
     EffectKind::Joint(JointEffect { coordinate: 0, law })
-}
-
-/// Kinetic energy less all works: constant where the integrator damps nothing.
-pub(crate) fn calc_books(world: &World) -> f64 {
-    let Account { external_work, actuator_work, passive_joint_work, contact_work, mechanism_work, effect_work, .. } =
-        world.state().account;
-    let works = external_work + actuator_work + passive_joint_work + contact_work + mechanism_work + effect_work;
-    Energy::of(world).kinetic - works
 }

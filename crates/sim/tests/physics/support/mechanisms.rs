@@ -1,7 +1,7 @@
 //! Small worlds with mechanisms.
 
 use super::{Setup, block, spec, twist, world};
-use sim::{Account, Anchor, Base, Bushing, Energy, Mechanism, MechanismKind, ModelSpec, Strength, Strut, Weld, World};
+use sim::{Anchor, Base, Bushing, Energy, Mechanism, MechanismKind, ModelSpec, Strength, Strut, Weld, World};
 use spatial::{Pose, Rot, Vec3};
 
 /// Half the edges of the usual free body of 2 kg, m.
@@ -93,16 +93,9 @@ pub(crate) fn strut_length(world: &World) -> f64 {
     world.mechanisms().next().unwrap().deformation[0]
 }
 
-/// Kinetic energy less all works: constant.
-pub(crate) fn calc_books(world: &World) -> f64 {
-    let Account { external_work, actuator_work, passive_joint_work, contact_work, mechanism_work, .. } =
-        world.state().account;
-    Energy::of(world).kinetic - external_work - actuator_work - passive_joint_work - contact_work - mechanism_work
-}
-
 /// Kinetic and stored energy and all that mechanisms have dissipated, less what a motor gave: constant where the
 /// integrator damps nothing.
 pub(crate) fn calc_total(world: &World) -> f64 {
     let (energy, account) = (Energy::of(world), world.state().account);
-    energy.kinetic + energy.mechanism + account.mechanism_loss - account.actuator_work
+    energy.kinetic + energy.mechanism + account.mechanism_loss - account.pull_in_work
 }

@@ -117,7 +117,6 @@ pub(crate) fn spec(vehicles: Vec<(Tree, Base)>, setup: &Setup) -> ModelSpec {
         environment: setup.environment,
         integrator: setup.integrator,
         step: setup.step,
-        one_sided_force: Vec3::zeros(),
     }
 }
 
