@@ -27,7 +27,10 @@ impl RobotDescription {
         for (i, joint) in self.joints.iter().enumerate() {
             is_root_body[i + 1] = joint.kind == JointKind::Fixed && is_root_body[joint.parent];
         }
-        self.links.iter().zip(is_root_body).any(|(link, is_root)| is_root && link.inertial.is_some_and(|i| i.mass > 0.0))
+        self.links
+            .iter()
+            .zip(is_root_body)
+            .any(|(link, is_root)| is_root && link.inertial.is_some_and(|i| i.mass > 0.0))
     }
 }
 

@@ -28,6 +28,6 @@ pub use mesh::{MeshError, SearchPaths, TextPlace, load_mesh};
 pub use singular::{Freedom, find_singular_freedoms, find_singular_freedoms_at};
 pub use tree::{Body, Joint, Link, SlidingPoint, Tree};
 pub use urdf::{
-    LoadedUrdf, Loss, UrdfDoubt, UrdfError, UrdfErrors, UrdfFinding, UrdfFindings, UrdfProblem, UrdfWarning, UrdfWarnings,
-    load_urdf, parse_urdf,
+    LoadedUrdf, Loss, UrdfDoubt, UrdfError, UrdfErrors, UrdfFinding, UrdfFindings, UrdfProblem, UrdfWarning,
+    UrdfWarnings, load_urdf, parse_urdf,
 };

@@ -119,7 +119,10 @@ mod tests {
         let search = SearchPaths::new(["/nowhere/share"]);
         let error = search.find("package://arm/meshes/a.stl", Path::new("/nowhere/urdf")).expect_err("not there");
         let said = error.to_string();
-        assert!(said.contains("\"arm\"") && said.contains("/nowhere/share") && said.contains("/nowhere/urdf"), "{said}");
+        assert!(
+            said.contains("\"arm\"") && said.contains("/nowhere/share") && said.contains("/nowhere/urdf"),
+            "{said}"
+        );
     }
 
     #[test]

@@ -145,9 +145,8 @@ impl Shapes<'_> {
     /// The shape of a `<visual>` or `<collision>`.
     fn geometry_of(&self, shape: Node<'_, '_>, tag: &'static Tag) -> Geometry {
         let geometry = part(shape, tag, "geometry");
-        let known = geometry.and_then(|(node, tag)| {
-            own_children(node).find_map(|n| Some((n, tag_in(tag, n.tag_name().name())?)))
-        });
+        let known = geometry
+            .and_then(|(node, tag)| own_children(node).find_map(|n| Some((n, tag_in(tag, n.tag_name().name())?))));
         let Some((form, tag)) = known else { return Geometry::Missing("its <geometry> is no shape of URDF".into()) };
         if tag.name == "mesh" {
             return self.mesh_of(form);

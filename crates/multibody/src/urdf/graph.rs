@@ -1,8 +1,8 @@
 //! Links and joints as one tree: every link but the root is the child of one joint.
 
 use super::errors::{UrdfProblem, cut};
-use super::findings::Findings;
 use super::facts::{Facts, JointFact, LinkFact, Mention};
+use super::findings::Findings;
 use super::joints::nearest_name;
 
 /// The tree, by the file's numbering of links and joints.

@@ -2,8 +2,8 @@
 
 use super::doubts::UrdfDoubt;
 use super::errors::{UrdfProblem, cut};
-use super::findings::Findings;
 use super::facts::{Facts, JointFact, part, tag_in};
+use super::findings::Findings;
 use super::nearest::find_nearest;
 use super::schema::{ROBOT, Tag};
 use super::walk::{numbers_of, own_attribute, text_of, version_of};

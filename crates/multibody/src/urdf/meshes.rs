@@ -120,10 +120,8 @@ struct LostPackage<'a> {
 impl Lost {
     /// Both, at the place of the earlier.
     fn and(self, other: Self) -> Self {
-        let loss = Loss {
-            seen: self.loss.seen || other.loss.seen,
-            touching: self.loss.touching || other.loss.touching,
-        };
+        let loss =
+            Loss { seen: self.loss.seen || other.loss.seen, touching: self.loss.touching || other.loss.touching };
         Self { loss, ..if other.offset < self.offset { other } else { self } }
     }
 }

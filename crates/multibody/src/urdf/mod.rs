@@ -32,8 +32,8 @@ pub use doubts::{Loss, UrdfDoubt};
 pub use errors::UrdfProblem;
 pub use findings::{UrdfError, UrdfErrors, UrdfFinding, UrdfFindings, UrdfWarning, UrdfWarnings};
 
-use crate::{RobotDescription, Tree};
 use crate::mesh::SearchPaths;
+use crate::{RobotDescription, Tree};
 use checks::check_robot;
 use convert::convert;
 use errors::cut;
@@ -76,12 +76,7 @@ pub fn load_urdf(path: &Path, search: &SearchPaths) -> Result<LoadedUrdf, UrdfEr
 }
 
 /// As [`load_urdf`], from text; `file` is what messages call it, `base_dir` what mesh paths are relative to.
-pub fn parse_urdf(
-    text: &str,
-    file: &Path,
-    base_dir: &Path,
-    search: &SearchPaths,
-) -> Result<LoadedUrdf, UrdfErrors> {
+pub fn parse_urdf(text: &str, file: &Path, base_dir: &Path, search: &SearchPaths) -> Result<LoadedUrdf, UrdfErrors> {
     if text.len() as u64 > LARGEST_FILE_BYTES {
         let problem = UrdfProblem::TooLarge { bytes: text.len() as u64, limit: LARGEST_FILE_BYTES };
         return Err(UrdfErrors::of_file(file, problem));

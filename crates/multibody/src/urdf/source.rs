@@ -48,8 +48,11 @@ impl<'a> Source<'a> {
 
     /// Offset in the text as it was given.
     pub(crate) fn original_offset(&self, offset: usize) -> usize {
-        let in_text =
-            if offset >= self.inserted_at + self.inserted { offset - self.inserted } else { offset.min(self.inserted_at) };
+        let in_text = if offset >= self.inserted_at + self.inserted {
+            offset - self.inserted
+        } else {
+            offset.min(self.inserted_at)
+        };
         self.cut + in_text
     }
 }

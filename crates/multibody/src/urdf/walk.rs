@@ -192,13 +192,7 @@ pub(crate) fn version_of(node: Node<'_, '_>) -> (u32, u32) {
 }
 
 /// A value that only spoils the looks is no reason to refuse a robot.
-fn tell_value(
-    node: Node<'_, '_>,
-    at: usize,
-    problem: UrdfProblem,
-    subject: &str,
-    findings: &mut Findings<'_>,
-) {
+fn tell_value(node: Node<'_, '_>, at: usize, problem: UrdfProblem, subject: &str, findings: &mut Findings<'_>) {
     match problem {
         UrdfProblem::OutOfRange { tag: "color", attribute, text, rule } => {
             findings.doubt(at, subject, UrdfDoubt::NoColour { tag: "color", attribute, text, rule });
