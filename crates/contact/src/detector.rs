@@ -90,7 +90,7 @@ impl Detector {
             let (body_a, body_b) = (scene.colliders()[a].body, scene.colliders()[b].body);
             let margin = reach[body_a] + reach[body_b] + SKIN;
             self.narrow += 1;
-            self.find((a, &scene.parts[a]), (b, &scene.parts[b]), margin);
+            self.find(scene, [a, b], margin);
             self.raw.sort_unstable_by_key(|p| p.feature);
             self.reduction.reduce(&mut self.raw);
             let reduction = &self.reduction;
@@ -162,8 +162,9 @@ impl Detector {
         self.candidates.sort_unstable();
     }
 
-    fn find(&mut self, (a, parts_a): (usize, &[Part]), (b, parts_b): (usize, &[Part]), margin: f64) {
+    fn find(&mut self, scene: &Scene, [a, b]: [usize; 2], margin: f64) {
         self.raw.clear();
+        let (parts_a, parts_b) = (&scene.parts[a], &scene.parts[b]);
         let (first_a, first_b) = (self.first_frame[a], self.first_frame[b]);
         for (i, a) in parts_a.iter().enumerate() {
             let frame_a = self.frames[first_a + i];

@@ -24,6 +24,8 @@ pub struct Kinematics {
     pub inertia: Vec<Inertia>,
     /// Body twists, W axes, about the anchor.
     pub vel: Vec<Twist>,
+    /// Whether a joint frame has its parent's axes, as most in files do.
+    is_straight: Vec<bool>,
 }
 
 impl Kinematics {
@@ -37,6 +39,7 @@ impl Kinematics {
             screws: vec![Twist::default(); tree.n_columns()],
             inertia: vec![Inertia::default(); n],
             vel: vec![Twist::default(); n],
+            is_straight: tree.joints.iter().map(|j| j.frame_pj.rot == Mat3::identity()).collect(),
         }
     }
 
@@ -47,7 +50,11 @@ impl Kinematics {
         self.inertia[0] = tree.bodies[0].inertia.transformed(&self.rot[0], &Vec3::zeros());
         for (j, joint) in tree.joints.iter().enumerate() {
             let (body, parent) = (j + 1, tree.bodies[j + 1].parent);
-            let frame_wj = joint.place(&Frame { rot: self.rot[parent], pos: self.pos[parent] });
+            let mut frame_wj = Frame { rot: self.rot[parent], pos: self.pos[parent] };
+            frame_wj.pos = frame_wj.point(&joint.frame_pj.pos);
+            if !self.is_straight[j] {
+                frame_wj.rot *= joint.frame_pj.rot;
+            }
             let frame_wc = joint.place_child(&frame_wj, q);
             (self.rot[body], self.pos[body]) = (frame_wc.rot, frame_wc.pos);
             joint.write_screws(&frame_wc.rot, &frame_wc.pos, &mut self.screws[joint.column..]);

@@ -17,7 +17,7 @@
 
 use crate::{JointDescription, JointKind, RobotDescription};
 use nalgebra::{Quaternion, UnitQuaternion};
-use spatial::{Frame, Inertia, Mat3, Twist, Vec3, exp_rotation, log_rotation, nalgebra, rotation_about};
+use spatial::{Frame, Inertia, Twist, Vec3, exp_rotation, log_rotation, nalgebra, rotation_about};
 
 /// A robot, ready to move; never changes after it is built.
 #[derive(Clone, Debug)]
@@ -80,8 +80,6 @@ pub struct Joint {
     pub kind: JointKind,
     /// Joint frame in the parent body's frame.
     pub frame_pj: Frame,
-    /// Whether it has the parent's axes.
-    pub(crate) is_straight: bool,
     /// Unit vector in the joint frame.
     pub axis: Vec3,
     /// First screw in [`crate::Kinematics::screws`].
@@ -167,7 +165,6 @@ impl Tree {
             name: joint.name.clone(),
             kind: joint.kind,
             frame_pj,
-            is_straight: frame_pj.rot == Mat3::identity(),
             axis: joint.axis,
             column,
             width: widths(joint.kind).1,
@@ -232,7 +229,6 @@ impl Tree {
             name,
             kind,
             frame_pj,
-            is_straight: frame_pj.rot == Mat3::identity(),
             axis,
             column: self.n_columns(),
             width: 1,
@@ -390,15 +386,6 @@ pub(crate) fn rotation_of_floating(q: &[f64]) -> UnitQuaternion<f64> {
 }
 
 impl Joint {
-    /// The joint frame, where the parent's is at `frame_wp`.
-    #[inline]
-    pub(crate) fn place(&self, frame_wp: &Frame) -> Frame {
-        if self.is_straight {
-            return Frame { rot: frame_wp.rot, pos: frame_wp.point(&self.frame_pj.pos) };
-        }
-        frame_wp * &self.frame_pj
-    }
-
     /// The child's frame, where the joint frame is at `frame_wj`, at the coordinates `q` of the whole tree.
     #[inline]
     pub(crate) fn place_child(&self, frame_wj: &Frame, q: &[f64]) -> Frame {

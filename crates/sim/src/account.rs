@@ -79,7 +79,9 @@ impl MomentumAudit {
 
 fn calc_link_sums(world: &World) -> LinkSums {
     let (mut links, mut mass, mut first, mut total) = (0, 0.0, Vec3::zeros(), Wrench::default());
+    let mut all = Vec::with_capacity(world.model().vehicles.iter().map(|v| v.tree.links.len()).sum());
     for_each_link(world, |m, x, momentum| {
+        all.push((m, x, momentum));
         links += u32::from(m > 0.0);
         mass += m;
         first += m * x;
@@ -93,11 +95,11 @@ fn calc_link_sums(world: &World) -> LinkSums {
     }
     let (centre, drift) = (first / mass, total.force / mass);
     let (mut speed, mut spin) = (0.0, 0.0);
-    for_each_link(world, |m, x, momentum| {
+    for (m, x, momentum) in all {
         let own = momentum.force - m * drift;
         speed += own.norm();
         spin += momentum.moment.norm() + (x - centre).norm() * own.norm();
-    });
+    }
     LinkSums { total, centre, speed, spin }
 }
 

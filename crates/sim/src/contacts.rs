@@ -266,6 +266,9 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
         }
         let (frame_a, frame_b) = (&ws.frames[body_a], &ws.frames[body_b]);
         let law = &model.laws[contact.pair as usize];
+        let is_still = |body: usize| ws.frames[body].rot == ws.frames_start[body].rot;
+        let neighbour = ws.touches.last().filter(|t| (t.body_a, t.body_b) == (body_a, body_b));
+        let is_at_start = neighbour.map_or_else(|| is_still(body_a) && is_still(body_b), |t| t.is_at_start);
         let mut touch = Touch {
             pair: contact.pair,
             feature: contact.feature,
@@ -276,7 +279,7 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
             local_b: frame_b.inverse_point(&point),
             rot_a: frame_a.rot,
             rot_b: frame_b.rot,
-            is_at_start: frame_a.rot == ws.frames_start[body_a].rot && frame_b.rot == ws.frames_start[body_b].rot,
+            is_at_start,
             normal: contact.normal_w,
             gap: contact.gap,
             weight: contact.weight,

@@ -83,7 +83,7 @@ fn place_vehicles(model: &Model, state: &mut State, ws: &mut Workspace, scheme: 
     for (i, vehicle) in model.vehicles.iter().enumerate() {
         ws.update_screws(model, state, i);
         if !vehicle.base.is_held() {
-            place_centre(model, state, ws, (i, scheme));
+            place_centre(model, state, ws, i, scheme);
         }
         ws.update_frames(model, i);
     }
@@ -93,7 +93,7 @@ fn place_vehicles(model: &Model, state: &mut State, ws: &mut Workspace, scheme: 
 ///
 /// The drift of the base origin is off by O(h²), and L − x × p turns that into spin: a body flying at 1 m/s and turning at
 /// 1 rad/s would be pushed aside by ½ mm/s, and its rotation would depend on the frame that one looks from.
-fn place_centre(model: &Model, state: &mut State, ws: &mut Workspace, (i, scheme): (usize, Scheme)) {
+fn place_centre(model: &Model, state: &mut State, ws: &mut Workspace, i: usize, scheme: Scheme) {
     let start = &ws.momentum_start[i];
     let mean = match scheme {
         Scheme::ImplicitMidpoint => 0.5 * (start + own_momentum(model, state, ws, i)),

@@ -71,16 +71,11 @@ impl Inertia {
     #[inline]
     pub fn transformed(&self, rot: &Mat3, pos: &Vec3) -> Self {
         let mc = rot * self.mc;
-        // I_O' = R I Rᵀ + (2 r·c − …) with r = pos: I + m(r²1 − rrᵀ) + 2(r·mc)1 − r mcᵀ − mc rᵀ; of a symmetric sum the half.
-        let (turned, moved) = (rot * self.rot, self.mass * pos + mc);
+        // I_O' = R I Rᵀ + (2 r·c − …) with r = pos: I + m(r²1 − rrᵀ) + 2(r·mc)1 − r mcᵀ − mc rᵀ.
+        let turned = rot * self.rot * rot.transpose();
         let diagonal = self.mass * pos.norm_squared() + 2.0 * pos.dot(&mc);
-        let entry = |i: usize, j: usize| {
-            let own = turned[(i, 0)] * rot[(j, 0)] + turned[(i, 1)] * rot[(j, 1)] + turned[(i, 2)] * rot[(j, 2)];
-            own - (pos[i] * moved[j] + mc[i] * pos[j])
-        };
-        let (xy, xz, yz) = (entry(0, 1), entry(0, 2), entry(1, 2));
-        let (xx, yy, zz) = (entry(0, 0) + diagonal, entry(1, 1) + diagonal, entry(2, 2) + diagonal);
-        Self { mass: self.mass, mc: mc + self.mass * pos, rot: Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) }
+        let outer = pos * (self.mass * pos + mc).transpose() + mc * pos.transpose();
+        Self { mass: self.mass, mc: mc + self.mass * pos, rot: turned - outer + Mat3::from_diagonal_element(diagonal) }
     }
 
     /// Momentum of the twist about the same point: angular (moment slot) and linear (force slot).
