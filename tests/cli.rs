@@ -169,6 +169,36 @@ fn check_tells_each_doubt_once_and_strict_refuses_it() {
 }
 
 #[test]
+fn packages_are_found_by_option_and_by_the_search_paths_of_ros() {
+    let dir = tempfile::tempdir().unwrap();
+    let (robot, share) = (place(&dir, "robot/arm.urdf"), place(&dir, "ros/share"));
+    fs::create_dir_all(robot.parent().unwrap()).unwrap();
+    fs::create_dir_all(share.join("arm_meshes")).unwrap();
+    fs::write(share.join("arm_meshes/palm.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let shape = "<visual><geometry><mesh filename='package://arm_meshes/palm.obj'/></geometry></visual>";
+    fs::write(&robot, format!("<robot name='r'><link name='a'>{shape}</link></robot>")).unwrap();
+    let check = |option: &[&str], variable: Option<(&str, &Path)>| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_softdock"));
+        command.args(["check", "--strict", text(&robot)]).args(option);
+        command.env_remove("ROS_PACKAGE_PATH").env_remove("AMENT_PREFIX_PATH").envs(variable);
+        let output = command.output().unwrap();
+        (output.status.code(), error_of(&output))
+    };
+    let (status, said) = check(&[], None);
+    assert!(
+        status == Some(3) && said.contains("package \"arm_meshes\" is not found") && said.contains("--package-path")
+    );
+    let (parent, package) = (share.parent().unwrap(), share.join("arm_meshes"));
+    let found = [
+        check(&["--package-path", text(&share)], None),
+        check(&["--package-path", text(&package)], None),
+        check(&[], Some(("ROS_PACKAGE_PATH", &share))),
+        check(&[], Some(("AMENT_PREFIX_PATH", parent))),
+    ];
+    assert!(found.iter().all(|(status, _)| *status == Some(0)), "{found:?}");
+}
+
+#[test]
 fn check_tells_a_xacro_source_how_to_become_a_urdf() {
     let dir = tempfile::tempdir().unwrap();
     let file = place(&dir, "arm.urdf.xacro");

@@ -1,6 +1,8 @@
 //! What is doubtful in a URDF file, as sentences: what it is about, what is odd, what was assumed, and how to settle it.
 //!
-//!   robots/arm.urdf:40:3: joint "elbow": a revolute joint without <limit>: it turns without end; …
+//! ```text
+//! robots/arm.urdf:40:3: joint "elbow": a revolute joint without <limit>: it has none; add …
+//! ```
 //!
 //! A robot with doubts loads. What is assumed is what Pinocchio (4.1) assumes wherever that can be simulated.
 
