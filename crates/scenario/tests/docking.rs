@@ -18,6 +18,8 @@ duration_s = 0.1
 kind = "lab"
 [strategy]
 kind = "none"
+[contact_default]
+enabled = false
 [[vehicle]]
 name = "client"
 urdf = "port.urdf"
@@ -90,7 +92,7 @@ fn all_kinds_reach_the_scene_with_their_sizes() {
 fn sizes_out_of_range_and_unknown_keys_are_told_with_their_line() {
     for (from, to, fragments) in [
         ("half_angle_deg = 45.0", "half_angle_deg = 95.0", ["`shape.drogue.half_angle_deg` = 95", "less than 90"]),
-        ("depth_m = 0.14", "depth_m = 0.14\nlenght_m = 1.0", ["lenght_m", "docking.toml:19"]),
+        ("depth_m = 0.14", "depth_m = 0.14\nlenght_m = 1.0", ["lenght_m", "docking.toml:21"]),
         ("kind = \"inner-cone\"", "kind = \"inner-kone\"", ["inner-kone", "inner-cone"]),
     ] {
         let said = written("broken", &SCENARIO.replacen(from, to, 1)).err().unwrap_or_default();

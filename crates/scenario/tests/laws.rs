@@ -8,7 +8,7 @@ use std::path::Path;
 fn laws(rule: &str) -> Result<sim::PairLaw, String> {
     let urdf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots/bench/peer-block.urdf");
     let text = format!(
-        "name = \"t\"\nseed = 1\nduration_s = 1.0\n[[vehicle]]\nname = \"b\"\nurdf = {:?}\n[[shape]]\nname = \"floor\"\n\
+        "name = \"t\"\nseed = 1\nduration_s = 1.0\n[[vehicle]]\nname = \"b\"\nurdf = {:?}\npose = {{ position_m = [0, 0, 0.05] }}\n[[shape]]\nname = \"floor\"\n\
          kind = \"half-space\"\n[[contact]]\nbetween = [\"b/*\", \"world/floor\"]\n{rule}",
         urdf.display().to_string()
     );

@@ -209,6 +209,8 @@ pub(crate) struct CoordinateForce {
     pub through: f64,
     /// Branch of the speed limit, where there is one.
     pub branch: Option<Branch>,
+    /// Whether the actuators gave less than was asked, since they turn as fast as they may.
+    pub is_limited: bool,
     /// −∂τ/∂v' by the speed limit's fall, where it is not in the slope: at an explicit stage.
     pub fall: f64,
 }
@@ -334,6 +336,7 @@ impl Coordinate {
             let limited = speed_limit::apply(self.speed_limit, (effort, slope), at.end.unwrap_or(v_new), at.branch);
             (effort, slope) = (limited.effort, limited.slope);
             (out.branch, out.fall) = (Some(limited.branch), limited.fall);
+            out.is_limited = limited.branch != Branch::Full;
             if at.end.is_none() {
                 slope += limited.fall;
             }
@@ -355,6 +358,7 @@ impl Coordinate {
         out.effort += motor.effort;
         out.slope += motor.slope;
         (out.driven, out.through) = (motor.driven, motor.effort);
+        out.is_limited = motor.is_limited;
     }
 
     /// The motor behind the gear that effect `index` is.

@@ -14,7 +14,6 @@ use crate::actuator::CoordinatePoint;
 use crate::contacts::Touch;
 use crate::effect::{self, Acting};
 use crate::model::{Model, PairLaw};
-use crate::speed_limit::{self, Branch};
 use crate::state::{ContactMemory, State};
 use crate::workspace::Workspace;
 use spatial::{Twist, Vec3, Wrench};
@@ -165,7 +164,7 @@ impl Passage {
             let [from, to] = [ws.effects_start[at], state.effects[at]];
             [0.5 * (from + to), (to - from) / h]
         });
-        let limited = find_limited(model, state, ws, i);
+        let limited = find_limited(ws, i);
         Self { point, time: ws.end - 0.5 * h, q, rate, elapsed: h, gear, limited }
     }
 
@@ -176,18 +175,13 @@ impl Passage {
             [state.effects[at], state.effects[at + 1]]
         });
         let (q, rate) = (state.q[coordinate.q_index], state.v[i]);
-        let limited = find_limited(model, state, ws, i);
+        let limited = find_limited(ws, i);
         Self { point: ws.coordinate_points[i], time: state.time, q, rate, elapsed: 1.0, gear, limited }
     }
 }
 
 /// The effort that a motor at its speed limit gave.
-fn find_limited(model: &Model, state: &State, ws: &Workspace, i: usize) -> Option<f64> {
-    let (limit, force) = (model.coordinates[i].speed_limit, &ws.coordinate_forces[i]);
-    if limit.is_infinite() {
-        return None;
-    }
-    let is_falling = force.branch.is_some_and(|branch| branch != Branch::Full);
-    let is_there = is_falling || speed_limit::is_reached(limit, model.calc_motor_side(state, i).1);
-    is_there.then_some(force.driven)
+fn find_limited(ws: &Workspace, i: usize) -> Option<f64> {
+    let force = &ws.coordinate_forces[i];
+    force.is_limited.then_some(force.driven)
 }

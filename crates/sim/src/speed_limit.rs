@@ -67,11 +67,6 @@ pub(crate) fn apply(limit: f64, asked: (f64, f64), end: f64, before: Option<Bran
     }
 }
 
-/// Whether a rate has reached a limit in either direction.
-pub(crate) fn is_reached(limit: f64, rate: f64) -> bool {
-    rate.abs() >= (1.0 - 2.0 * FALL) * limit
-}
-
 /// Whether a rate is so far below a limit that the line at full effort stands.
 fn is_far(limit: f64, point: &CoordinatePoint, rate: f64) -> bool {
     point.branch == Some(Branch::Full) && rate.abs() < (1.0 - FALL) * limit

@@ -5,7 +5,6 @@ use crate::effect;
 use crate::error::StepError;
 use crate::mechanism::{self, MechanismKind, MechanismMemory, MechanismReport};
 use crate::model::{Integrator, Model};
-use crate::speed_limit;
 use crate::state::{ContactMemory, State};
 use crate::step::{self, Scheme};
 use crate::workspace::{Workspace, calc_world_momentum};
@@ -301,9 +300,9 @@ impl World {
         self.model.calc_motor_side(&self.state, coordinate)
     }
 
-    /// Whether the motors of a coordinate have reached the speed at which they stop pushing.
-    pub fn is_at_speed_limit(&self, coordinate: usize) -> bool {
-        speed_limit::is_reached(self.model.coordinates[coordinate].speed_limit, self.motor_side(coordinate).1)
+    /// Whether the motors of a coordinate gave less than was asked in the last step, since they turn as fast as they may.
+    pub fn is_speed_limited(&self, coordinate: usize) -> bool {
+        self.ws.coordinate_forces[coordinate].is_limited
     }
 
     fn make_step(&mut self) -> Result<(), StepError> {

@@ -31,6 +31,8 @@ const QUIET: f64 = 1e-3;
 const PROBE: f64 = 1e-6;
 /// How much more than the bodies' inertia a contact that bears any load resists in that step: the load's relative error.
 const UNYIELDING: f64 = 1e6;
+/// Load that is told, N: less is none.
+const TOLD: f64 = 1e-3;
 /// So many pairs are told one by one.
 const MOST_TOLD: usize = 8;
 
@@ -163,7 +165,7 @@ fn tell(scenario: &Scenario, model: &Model, overlap: &Overlap, faults: &mut Faul
     let [a, b] = model.scene.pairs()[overlap.pair];
     let [name_a, name_b] = [a, b].map(|c| model.collider_names[c].as_str());
     let bodies = [a, b].map(|c| model.scene.colliders()[c].body);
-    let held = if overlap.load > 0.0 { format!(", of which {:.3} N hold", overlap.load) } else { String::new() };
+    let held = if overlap.load >= TOLD { format!(", of which {:.3} N hold", overlap.load) } else { String::new() };
     let facts = format!(
         "\"{name_a}\" and \"{name_b}\" overlap by {:.3} mm at t = 0: contact presses with {:.3} N{held}, and stores {:.3} J, \
          enough to throw the lighter at {:.3} m/s",

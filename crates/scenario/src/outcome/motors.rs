@@ -66,7 +66,7 @@ impl MotorWatch {
             if motor.is_wheel && world.state().commands[motor.actuator].effort.abs() > motor.torque_limit {
                 motor.torque_limited.get_or_insert(time);
             }
-            if !motor.is_at_limit && speed > OFF * limit && world.is_at_speed_limit(motor.coordinate) {
+            if !motor.is_at_limit && speed > OFF * limit && world.is_speed_limited(motor.coordinate) {
                 motor.is_at_limit = true;
                 motor.speed_limited.get_or_insert(time);
                 let unit = if motor.is_wheel { " rad/s" } else { " (rad/s or m/s)" };

@@ -42,6 +42,8 @@ pub(crate) struct Motor {
     pub driven: f64,
     /// Rate of the rotor at the end of a one-solve step.
     rate_end: f64,
+    /// Whether the drive gave less than was asked, at the speed limit.
+    pub is_limited: bool,
 }
 
 /// What a motor's step depends on beside its joint.
@@ -92,7 +94,8 @@ impl Series {
             return motor;
         }
         let held = self.turn_to(at, v_new, shaft, limit.copysign(asked));
-        if held.driven * asked >= 0.0 { held } else { self.turn(at, v_new, shaft, &|_, _, _| (0.0, 0.0)) }
+        let motor = if held.driven * asked >= 0.0 { held } else { self.turn(at, v_new, shaft, &|_, _, _| (0.0, 0.0)) };
+        Motor { is_limited: asked != 0.0, ..motor }
     }
 
     /// The motor under what its drive gives.
@@ -110,7 +113,7 @@ impl Series {
             let (driven, _) = drive(at, at.q_base + x_start, omega);
             let (effort, _) = self.eval_law(x_start, w_start);
             let rate_end = omega + step * (driven - effort) / self.rotor;
-            return Motor { effort, slope: 0.0, driven, rate_end };
+            return Motor { effort, slope: 0.0, driven, rate_end, is_limited: false };
         }
         let (x_base, theta_base) = self.bases(at, v_new, memory);
         let mut rate_end = omega + v_new - at.v_start;
@@ -133,7 +136,7 @@ impl Series {
         }
         let held = self.rotor + step * by_drive;
         let slope = spring * held / (held + step * spring);
-        Motor { effort, slope, driven, rate_end }
+        Motor { effort, slope, driven, rate_end, is_limited: false }
     }
 
     /// The motor that ends the step at a rate, with the effort on the rotor that takes.
@@ -150,7 +153,7 @@ impl Series {
         let (effort, engaged) = self.eval_law(x, rate - link_rate);
         let slope = if engaged { self.stiffness * at.beta + self.damping * at.theta } else { 0.0 };
         let driven = effort + self.rotor * (rate_end - omega) / step;
-        Motor { effort, slope, driven, rate_end }
+        Motor { effort, slope, driven, rate_end, is_limited: false }
     }
 
     /// Deflection and motor position at the evaluated point, less β times the motor's new rate.

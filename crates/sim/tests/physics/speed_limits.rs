@@ -49,7 +49,7 @@ fn wheel_stops_at_its_limit_and_what_it_took_stays_with_it() {
             let fastest = push(&mut world, TORQUE, (2.0 / step) as usize);
             let (held, work, energy) = (world.state().v[0], world.works().actuators[0], Energy::of(&world));
             assert!(fastest <= LIMIT * (1.0 + 1e-12), "{integrator:?}: {fastest} rad/s");
-            assert!(held > LIMIT - WIDTH && world.is_at_speed_limit(0), "{integrator:?}: {held} rad/s");
+            assert!(held > LIMIT - WIDTH && world.is_speed_limited(0), "{integrator:?}: {held} rad/s");
             // Nothing turns but wheel and bus against each other: what the motor still gives is round-off.
             push(&mut world, TORQUE, (1.0 / step) as usize);
             let more = world.works().actuators[0] - work;
@@ -68,14 +68,14 @@ fn wheel_comes_off_its_limit_in_the_step_in_which_the_command_turns() {
             push(&mut world, direction * TORQUE, 100);
             let gained = world.state().v[0];
             push(&mut world, direction * TORQUE, 1_500);
-            assert!(world.is_at_speed_limit(0) && world.state().v[0] * direction > 0.0);
+            assert!(world.is_speed_limited(0) && world.state().v[0] * direction > 0.0);
             let held = world.state().v[0];
             push(&mut world, -direction * TORQUE, 100);
             // From rest to speed and from the limit back: the same torque on the same inertia, the bus at rest with the
             // whole at zero momentum; what is left is the width of the fall and the integrator on a turn of 1 mrad.
             let lost = held - world.state().v[0];
             assert!((lost / gained - 1.0).abs() < 1e-5, "{integrator:?}: {lost} {gained}");
-            assert!(!world.is_at_speed_limit(0));
+            assert!(!world.is_speed_limited(0));
         }
     }
 }
@@ -172,7 +172,7 @@ fn behind_a_gear_that_yields_it_is_the_motor_that_stops_at_the_limit() {
             (work, rate) = (work_now, rate_now);
         }
         // The joint follows its motor, both at the limit, against 0.1 N·m·s/rad.
-        assert!((world.state().v[0] - LIMIT).abs() < 1e-3 && world.is_at_speed_limit(0), "{integrator:?}");
+        assert!((world.state().v[0] - LIMIT).abs() < 1e-3 && world.is_speed_limited(0), "{integrator:?}");
         world.commands_mut()[0].effort = -6.0;
         run(&mut world, 200);
         assert!(world.motor_side(0).1 < 0.8 * LIMIT, "{integrator:?}: it comes off");
