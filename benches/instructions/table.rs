@@ -79,7 +79,7 @@ pub fn compare(committed: &[Row], counted: &[(String, u64)]) -> Vec<(String, Ver
     let of_case = |(case, now): &(String, u64)| match committed.iter().find(|r| r.case == *case) {
         None => (case.clone(), Verdict::New, 0.0),
         Some(row) => {
-            let change = *now as f64 / row.instructions as f64 - 1.0;
+            let change = (*now as f64 - row.instructions as f64) / row.instructions as f64;
             (case.clone(), judge(change), change)
         }
     };
