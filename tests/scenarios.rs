@@ -1,5 +1,5 @@
 //! The catalogue: every robot loads, every scenario runs, the captures end as they should.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod support;
 

@@ -52,7 +52,8 @@ fn steps() {
 }
 
 fn kernels() {
-    let kernels: [(&str, fn(&mut Arm)); 5] = [
+    type Kernel = fn(&mut Arm);
+    let kernels: [(&str, Kernel); 5] = [
         ("kinematics", Arm::update),
         ("RNEA", Arm::rnea),
         ("CRBA", Arm::crba),

@@ -167,8 +167,8 @@ pub struct SpatialMatrix {
 impl SpatialMatrix {
     /// Xᵀ G X: what the symmetric 3×3 map `g` from the velocity of a point at `r` to a force there is about the origin.
     ///
-    ///   v = v_o − [r] ω,  m = [r] f:   (m, f) = ( −[r] G [r]   [r] G )  (ω, v_o)
-    ///                                          (    −G [r]       G  )
+    ///   v = v_o − r× ω,  m = r× f:   (m, f) = ( −r× G r×   r× G )  (ω, v_o)
+    ///                                          (    −G r×       G  )
     #[inline]
     pub fn from_point(g: &Mat3, r: &Vec3) -> Self {
         let ml = cross_columns(r, g);
