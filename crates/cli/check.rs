@@ -29,6 +29,8 @@ struct Sound {
     line: String,
     /// Each is told once.
     warnings: Vec<String>,
+    /// How many more there are.
+    more: usize,
 }
 
 /// Checks every file; the first bad one does not hide the others.
@@ -38,9 +40,8 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
         let result = if is_robot(file) { check_robot(file, arguments) } else { check_scenario(file, arguments) };
         match result {
             Ok(sound) => {
-                sound.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+                sound.tell(file);
                 doubtful += usize::from(!sound.warnings.is_empty());
-                println!("{}: {}. {}", file.display(), verdict(sound.warnings.len()), sound.line);
             }
             Err(error) => {
                 eprintln!("{error:#}");
@@ -64,11 +65,18 @@ pub(crate) fn is_robot(file: &Path) -> bool {
     ["urdf", "xml", "xacro"].iter().any(|known| extension.eq_ignore_ascii_case(known))
 }
 
-fn verdict(warnings: usize) -> String {
-    match warnings {
-        0 => "sound".to_owned(),
-        1 => "loads, with 1 warning".to_owned(),
-        n => format!("loads, with {n} warnings"),
+impl Sound {
+    fn tell(&self, file: &Path) {
+        self.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+        if self.more > 0 {
+            eprintln!("… and {} more warnings", self.more);
+        }
+        let verdict = match self.warnings.len() + self.more {
+            0 => "sound".to_owned(),
+            1 => "loads, with 1 warning".to_owned(),
+            n => format!("loads, with {n} warnings"),
+        };
+        println!("{}: {verdict}. {}", file.display(), self.line);
     }
 }
 
@@ -84,7 +92,8 @@ fn check_robot(file: &Path, arguments: &Arguments) -> anyhow::Result<Sound> {
         tree.nv,
         tree.mass()
     );
-    Ok(Sound { line, warnings: lines(&loaded.warnings) })
+    let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
+    Ok(Sound { line, warnings, more: loaded.warnings.more() })
 }
 
 /// Errors and warnings of a file that does not load, in its order.
@@ -98,11 +107,6 @@ fn in_order(errors: &UrdfErrors) -> String {
     let more = [(errors.more(), "errors"), (errors.warnings().more(), "warnings")];
     let more = more.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("… and {n} more {what}"));
     told.into_iter().map(|(_, text)| text).chain(more).collect::<Vec<_>>().join("\n")
-}
-
-fn lines(warnings: &UrdfWarnings) -> Vec<String> {
-    let more = (warnings.more() > 0).then(|| format!("… and {} more", warnings.more()));
-    warnings.iter().map(ToString::to_string).chain(more).collect()
 }
 
 fn check_scenario(file: &Path, arguments: &Arguments) -> anyhow::Result<Sound> {
@@ -119,25 +123,28 @@ fn check_scenario(file: &Path, arguments: &Arguments) -> anyhow::Result<Sound> {
         mission.steps,
         model.step
     );
-    let mut warnings: Vec<String> = Vec::new();
-    for warning in mission.robot_warnings.iter().flat_map(lines) {
-        // Two vehicles may be of one file.
-        if !warnings.contains(&warning) {
-            warnings.push(warning);
+    let (mut warnings, mut more) = (Vec::new(), 0);
+    for (_, found) in distinct(&mission) {
+        warnings.extend(found.iter().map(ToString::to_string));
+        more += found.more();
+    }
+    Ok(Sound { line, warnings, more })
+}
+
+/// What is doubtful in a scenario's robots, once for each file: two vehicles may be of one.
+fn distinct(mission: &softdock::scenario::Mission) -> Vec<(&Path, &UrdfWarnings)> {
+    let mut files: Vec<(&Path, &UrdfWarnings)> = Vec::new();
+    for (robot, warnings) in mission.robots.iter().zip(&mission.robot_warnings) {
+        if !files.iter().any(|(file, _)| *file == robot.file) {
+            files.push((&robot.file, warnings));
         }
     }
-    Ok(Sound { line, warnings })
+    files
 }
 
 /// As [`hint`], once for each file of a scenario's robots.
 pub(crate) fn hints(mission: &softdock::scenario::Mission) {
-    let mut told: Vec<&Path> = Vec::new();
-    for (robot, warnings) in mission.robots.iter().zip(&mission.robot_warnings) {
-        if !told.contains(&robot.file.as_path()) {
-            hint(&robot.file, warnings);
-            told.push(&robot.file);
-        }
-    }
+    distinct(mission).into_iter().for_each(|(file, warnings)| hint(file, warnings));
 }
 
 /// One line for a command that goes on: how much is doubtful in a robot's file, and who tells it.

@@ -16,6 +16,7 @@ use crate::mesh::{SearchPaths, load_mesh};
 use crate::{Mesh, MeshError};
 use roxmltree::Node;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -44,11 +45,12 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) search: &'a SearchPaths,
 }
 
-/// A mesh that was not had: where it is first asked for, and by whom.
+/// A mesh that was not had: where it is first asked for, by whom, and why.
 struct Lost {
     offset: usize,
     subject: String,
     loss: Loss,
+    error: MeshError,
 }
 
 /// Loads all meshes.
@@ -58,20 +60,18 @@ pub(crate) fn load_meshes(
     findings: &mut Findings<'_>,
 ) -> Meshes {
     let mut loader = MeshLoader { surroundings, known: Meshes::new(), files: BTreeMap::new() };
-    let mut lost: BTreeMap<MeshKey, Lost> = BTreeMap::new();
+    // By name: a mesh that is missing is missing at every scale.
+    let mut lost: BTreeMap<String, Lost> = BTreeMap::new();
     for link in &facts.links {
         for (mesh, seen) in meshes_of(link) {
             let Some((key, scale)) = MeshKey::of(mesh) else { continue };
-            if loader.load(&key, scale) {
-                continue;
-            }
-            let loss = Loss { seen: false, touching: false };
-            let first = || Lost { offset: mesh.range().start, subject: link.subject(), loss };
-            let lost = &mut lost.entry(key).or_insert_with(first).loss;
-            *lost = Loss { seen: lost.seen || seen, touching: lost.touching || !seen };
+            let Err(error) = loader.load(&key, scale) else { continue };
+            let loss = Loss { seen, touching: !seen };
+            let here = Lost { offset: mesh.range().start, subject: link.subject(), loss, error };
+            note(&mut lost, key.name, here);
         }
     }
-    tell(&loader.known, lost, findings);
+    tell(lost, findings);
     loader.known
 }
 
@@ -86,43 +86,40 @@ fn meshes_of<'a, 'i: 'a>(link: &LinkFact<'a, 'i>) -> impl Iterator<Item = (Node<
     })
 }
 
-fn tell(known: &Meshes, lost: BTreeMap<MeshKey, Lost>, findings: &mut Findings<'_>) {
-    let mut places: BTreeMap<String, LostPlace<'_>> = BTreeMap::new();
-    for (key, lost) in lost {
-        let Some(Err(error)) = known.get(&key) else { continue };
-        if let Some(place) = error.missing_place() {
-            let place = places.entry(place).or_insert(LostPlace { count: 0, lost: None, error });
-            place.count += 1;
-            place.lost = Some(match place.lost.take() {
-                Some(first) => first.and(lost),
-                None => lost,
-            });
-        } else if error.is_missing() || !lost.loss.touching {
-            findings.doubt(lost.offset, lost.subject, UrdfDoubt::Mesh { mesh: error.clone(), loss: lost.loss });
+/// Adds to what is told of one mesh or place.
+fn note(lost: &mut BTreeMap<String, Lost>, name: String, more: Lost) {
+    match lost.entry(name) {
+        Entry::Vacant(place) => drop(place.insert(more)),
+        Entry::Occupied(mut place) => place.get_mut().join(more),
+    }
+}
+
+fn tell(lost: BTreeMap<String, Lost>, findings: &mut Findings<'_>) {
+    let (mut places, mut counts) = (BTreeMap::new(), BTreeMap::<String, usize>::new());
+    for lost in lost.into_values() {
+        if let Some(place) = lost.error.missing_place() {
+            *counts.entry(place.clone()).or_default() += 1;
+            note(&mut places, place, lost);
+        } else if lost.error.is_missing() || !lost.loss.touching {
+            findings.doubt(lost.offset, lost.subject, UrdfDoubt::Mesh { mesh: lost.error, loss: lost.loss });
         } else {
-            findings.add(lost.offset, lost.subject, error.clone().into());
+            findings.add(lost.offset, lost.subject, lost.error.into());
         }
     }
-    for LostPlace { count, lost, error } in places.into_values() {
-        let Some(lost) = lost else { continue };
-        let doubt = UrdfDoubt::Meshes { place: error.clone(), count, loss: lost.loss };
+    for (lost, count) in places.into_values().zip(counts.into_values()) {
+        let doubt = UrdfDoubt::Meshes { place: lost.error, count, loss: lost.loss };
         findings.doubt(lost.offset, lost.subject, doubt);
     }
 }
 
-/// Meshes that went with their package or folder, which is told at the first of them.
-struct LostPlace<'a> {
-    count: usize,
-    lost: Option<Lost>,
-    error: &'a MeshError,
-}
-
 impl Lost {
-    /// Both, at the place of the earlier.
-    fn and(self, other: Self) -> Self {
-        let loss =
-            Loss { seen: self.loss.seen || other.loss.seen, touching: self.loss.touching || other.loss.touching };
-        Self { loss, ..if other.offset < self.offset { other } else { self } }
+    /// Both losses, at the place of the earlier.
+    fn join(&mut self, other: Self) {
+        let (a, b) = (self.loss, other.loss);
+        if other.offset < self.offset {
+            *self = other;
+        }
+        self.loss = Loss { seen: a.seen || b.seen, touching: a.touching || b.touching };
     }
 }
 
@@ -134,13 +131,12 @@ struct MeshLoader<'a> {
 }
 
 impl MeshLoader<'_> {
-    /// Whether the mesh is had.
-    fn load(&mut self, key: &MeshKey, scale: [f64; 3]) -> bool {
-        if !self.known.contains_key(key) {
-            let loaded = self.load_new(key, scale);
-            self.known.insert(key.clone(), loaded);
-        }
-        self.known.get(key).is_some_and(Result::is_ok)
+    fn load(&mut self, key: &MeshKey, scale: [f64; 3]) -> Result<(), MeshError> {
+        let known = self.known.get(key).cloned();
+        let loaded = known.unwrap_or_else(|| self.load_new(key, scale));
+        let is_had = loaded.as_ref().map(|_| ()).map_err(Clone::clone);
+        self.known.entry(key.clone()).or_insert(loaded);
+        is_had
     }
 
     fn load_new(&mut self, key: &MeshKey, scale: [f64; 3]) -> Result<Arc<Mesh>, MeshError> {

@@ -208,6 +208,9 @@ fn meshes_that_are_not_there_leave_the_robot_without_them() {
     let two = robot(&format!(
         "<link name=\"palm\">\n<visual>{hand}</visual><collision>{hand}</collision><visual>{other}</visual></link>"
     ));
+    let shape =
+        |scale: &str| format!("<visual><geometry><mesh filename=\"lost.stl\" scale=\"{scale}\"/></geometry></visual>");
+    let mirrored = robot(&format!("<link name=\"palm\">\n{}\n{}</link>", shape("1 1 1"), shape("1 -1 1")));
     check_doubts(
         vec![
             missing(
@@ -221,6 +224,7 @@ fn meshes_that_are_not_there_leave_the_robot_without_them() {
                 &["\"arm_description\" is not found", "missing_meshes"],
             ),
             missing("directory", "folder.stl", &["is not found"]),
+            Case::new("at two scales", mirrored, &["bad.urdf:3:", "lost.stl is not found"]),
             Case::new(
                 "package of two meshes",
                 two,
