@@ -149,7 +149,7 @@ impl Start {
         state.bases.clone_from(&self.bases);
         state.q.clone_from(&self.q);
         state.v.clone_from(&self.v);
-        let mut world = World::new(Arc::clone(built.model_of(run)), state);
+        let mut world = World::new(Arc::clone(built.model_of(run)), state).without_books();
         world.set_base_twists(&self.twists);
         if !self.bristles.is_empty() {
             let s = |i: usize| self.bristles.get(i).copied().unwrap_or_default();

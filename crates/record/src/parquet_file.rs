@@ -86,6 +86,8 @@ fn channel_field(spec: &ChannelSpec) -> Field {
 fn properties(meta: &Meta) -> WriterProperties {
     WriterProperties::builder()
         .set_created_by(format!("softdock {}", meta.version))
+        // Samples of a signal are seldom twice the same: a dictionary of them is work for nothing.
+        .set_dictionary_enabled(false)
         .set_compression(Compression::SNAPPY)
         .set_statistics_enabled(EnabledStatistics::Chunk)
         .set_max_row_group_row_count(Some(64 * 1024))

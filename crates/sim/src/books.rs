@@ -55,6 +55,9 @@ fn displacing_twist(model: &Model, ws: &Workspace, body: usize) -> Twist {
 
 /// Works of gravity and tides, thrusters, and effects on bodies.
 pub(crate) fn add_external(model: &Model, state: &mut State, ws: &Workspace, h: f64) {
+    if !ws.keeps_books {
+        return;
+    }
     if !model.environment.is_still() {
         let power = |(body, weight): (usize, &Wrench)| displacing_twist(model, ws, body).dot(weight);
         let power: f64 = ws.weights.iter().enumerate().map(power).sum();
@@ -124,7 +127,7 @@ fn calc_deflection_energy(model: &Model, pair: u32, s: &Vec3, turn: &Vec3) -> f6
 /// Bristles of the step's start that no point carries on are lost with what they held; `ws` holds the touches before their
 /// memories are written.
 pub(crate) fn add_cut_off(model: &Model, state: &mut State, ws: &Workspace) {
-    if state.bristles.is_empty() {
+    if !ws.keeps_books || state.bristles.is_empty() {
         return;
     }
     let carried_on = |t: &&Touch| t.out.bears && model.laws[t.pair as usize].remembers();
@@ -136,6 +139,9 @@ pub(crate) fn add_cut_off(model: &Model, state: &mut State, ws: &Workspace) {
 /// Works of actuators and effects on the joints' coordinates and losses there: over a step whose end `state` is, or at the
 /// present stage of Runge–Kutta. Dry friction of the joints themselves is booked where its deflection is advanced.
 pub(crate) fn add_coordinates(model: &Model, state: &mut State, ws: &Workspace) {
+    if !ws.keeps_books {
+        return;
+    }
     let mut works = std::mem::take(&mut state.works);
     let mut loss = 0.0;
     for (i, coordinate) in model.coordinates.iter().enumerate().filter(|(_, c)| !c.is_idle()) {

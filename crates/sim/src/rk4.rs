@@ -51,20 +51,26 @@ struct Rates {
     account: Account,
 }
 
+fn zero<T: Clone + Default>(x: &mut Vec<T>, n: usize) {
+    x.clear();
+    x.resize(n, T::default());
+}
+
 impl Rates {
     fn reset(&mut self, model: &Model, slots: usize) {
-        fn zero<T: Clone + Default>(x: &mut Vec<T>, n: usize) {
-            x.clear();
-            x.resize(n, T::default());
-        }
         zero(&mut self.base, model.vehicles.len());
         zero(&mut self.momentum, model.vehicles.len());
         zero(&mut self.xi, model.nv());
         zero(&mut self.v, model.nv());
+        self.reset_sums(model, slots);
+        self.account = Account::default();
+    }
+
+    /// What a stage adds to; the rest it writes whole.
+    fn reset_sums(&mut self, model: &Model, slots: usize) {
         zero(&mut self.s, slots);
         zero(&mut self.effects, model.effects.n_memory());
         zero(&mut self.works, model.n_works());
-        self.account = Account::default();
     }
 
     fn add_scaled(&mut self, other: &Self, k: f64) {
@@ -101,7 +107,7 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     begin(model, state, ws);
     // A stage's works are rates: nothing gains within it.
     ws.gain_share = 0.0;
-    let bristles = books::calc_bristle_energy(model, &state.bristles);
+    let bristles = if ws.keeps_books { books::calc_bristle_energy(model, &state.bristles) } else { 0.0 };
     let mut rk = std::mem::take(&mut ws.rk);
     rk.start.copy_from(state);
     for (index, (node, weight)) in STAGES.into_iter().enumerate() {
@@ -128,16 +134,20 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
     let from = From { start: &rk.start, rate: &rk.sum, slots: &rk.slots };
     place(model, state, &mut ws.displacement, &from, h);
     drive::place(model, state, ws.end);
-    state.account.add_scaled(&rk.sum.account, h);
-    state.works.iter_mut().zip(&rk.sum.works).for_each(|(sum, rate)| *sum += rate * h);
+    if ws.keeps_books {
+        state.account.add_scaled(&rk.sum.account, h);
+        state.works.iter_mut().zip(&rk.sum.works).for_each(|(sum, rate)| *sum += rate * h);
+    }
     rk4_bristle::place_at_the_end(model, &rk.tracks, &mut state.bristles);
     ws.rk = rk;
     ws.update_positions(model, state);
     finish(model, state, ws);
     pivots::commit(ws);
     carry_to_the_end(model, state, ws);
-    // Stages have booked the whole work of friction as lost; what the bristles hold of it is not.
-    state.account.contact_loss -= books::calc_bristle_energy(model, &state.bristles) - bristles;
+    if ws.keeps_books {
+        // Stages have booked the whole work of friction as lost; what the bristles hold of it is not.
+        state.account.contact_loss -= books::calc_bristle_energy(model, &state.bristles) - bristles;
+    }
     mechanism::commit(model, state, ws);
 }
 
@@ -208,7 +218,7 @@ fn place(model: &Model, state: &mut State, displacement: &mut [f64], from: &From
 /// Rates at the present stage, whose kinematics and touches `ws` holds.
 fn calc_rates(model: &Model, state: &mut State, ws: &mut Workspace, rk: &mut Stages) {
     let slots = rk.slots.len();
-    rk.rate.reset(model, slots);
+    rk.rate.reset_sums(model, slots);
     eval_contacts(model, ws, rk);
     mechanism::eval_explicit(model, state, ws);
     pivots::eval_explicit(model, ws, state.time - rk.start.time);

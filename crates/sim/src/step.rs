@@ -418,8 +418,10 @@ pub(crate) fn add_impulses(model: &Model, state: &mut State, ws: &Workspace, h: 
         let moment = touch.point.cross(&impulse);
         add_impulse(model, state, ws, touch.body_a, &touch.point, &Wrench::new(-moment, -impulse));
         add_impulse(model, state, ws, touch.body_b, &touch.point, &Wrench::new(moment, impulse));
-        let gain = relative_gain(model, ws, touch);
-        books::add_touch(model, state, ws, touch, &gain);
+        if ws.keeps_books {
+            let gain = relative_gain(model, ws, touch);
+            books::add_touch(model, state, ws, touch, &gain);
+        }
     }
     mechanism::add_impulses(model, state, ws, h);
     pivots::add_impulses(model, state, ws, h);

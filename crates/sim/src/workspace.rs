@@ -17,6 +17,8 @@ pub(crate) struct Workspace {
     pub end: f64,
     /// Share of a step's gains in the velocity that displaces: 1 for the Euler schemes, ½ at mid-step, 0 in a stage.
     pub gain_share: f64,
+    /// Whether [`crate::books`] are kept.
+    pub keeps_books: bool,
     /// Time since the step's start of an explicit stage, s.
     pub since: Option<f64>,
     pub kin: Vec<Kinematics>,
@@ -83,6 +85,7 @@ impl Workspace {
             step: model.step,
             end: 0.0,
             gain_share: 0.0,
+            keeps_books: true,
             since: None,
             kin: model.vehicles.iter().map(|v| Kinematics::new(&v.tree)).collect(),
             dynamics: model.vehicles.iter().map(|v| Dynamics::new(&v.tree)).collect(),

@@ -85,6 +85,13 @@ impl World {
         world
     }
 
+    /// The same world without accounts of energy: [`State::works`] and [`State::account`] say nothing of what it does from now on, and
+    /// nothing that moves is any different. For replays that nobody asks what became of the energy.
+    pub fn without_books(mut self) -> Self {
+        self.ws.keeps_books = false;
+        self
+    }
+
     /// The model.
     pub fn model(&self) -> &Arc<Model> {
         &self.model

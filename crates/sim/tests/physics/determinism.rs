@@ -64,6 +64,23 @@ fn snapshot_through_a_file_repeats_the_uninterrupted_run() {
 }
 
 #[test]
+fn without_books_everything_moves_to_the_same_bits() {
+    for integrator in ALL {
+        let setup = Setup::new(integrator);
+        for (scene, (mut kept, plain)) in worlds(&setup).into_iter().zip(worlds(&setup)).enumerate() {
+            let mut plain = plain.without_books();
+            run(&mut kept, 1_000);
+            run(&mut plain, 1_000);
+            assert!(plain.state().works.iter().all(|w| *w == 0.0), "{integrator:?}, scene {scene}: no work is booked");
+            let mut moved = kept.state().clone();
+            assert_ne!(bits(&moved), bits(plain.state()), "{integrator:?}, scene {scene}: the other world has books");
+            (moved.account, moved.works) = (plain.state().account, plain.state().works.clone());
+            assert_eq!(bits(&moved), bits(plain.state()), "{integrator:?}, scene {scene}");
+        }
+    }
+}
+
+#[test]
 fn looking_at_a_world_changes_no_bit() {
     for integrator in ALL {
         let (mut watched, mut alone) = (gripper(&Setup::new(integrator)), gripper(&Setup::new(integrator)));
