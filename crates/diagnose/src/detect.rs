@@ -10,7 +10,7 @@
 //! that were fitted only lower the cost: the test errs towards calm.
 
 use crate::evidence::{Detection, Whiteness, autocorrelation};
-use crate::judge::{Judgement, Scalar};
+use crate::judge::{Prediction, Scalar};
 use crate::linear::Stage;
 use crate::run::Findings;
 use record::Role;
@@ -21,13 +21,12 @@ const FALSE_ALARM: f64 = 0.01;
 /// Scalars that a group has at least.
 const LEAST: usize = 4;
 
-/// The nominal model's windows against noise; none where nothing was measured.
-pub(crate) fn detection(stage: &Stage<'_>, judgement: &Judgement) -> Option<Detection> {
-    let nominal = &judgement.windowed[0];
+/// A model's windows against noise; none where nothing was measured. A noise level that is not better known is no mismatch.
+pub(crate) fn detection(stage: &Stage<'_>, prediction: &Prediction) -> Option<Detection> {
     let mut groups: BTreeMap<(usize, usize, Option<usize>), (f64, usize)> = BTreeMap::new();
     for (run, tape) in stage.tapes.iter().enumerate().filter(|(_, t)| t.role == Role::Fit) {
-        let windows: Vec<f64> = nominal.fit.segments.iter().filter(|s| s.run == run).map(|s| s.span.to).collect();
-        for scalar in nominal.scalars(tape) {
+        let windows: Vec<f64> = prediction.fit.segments.iter().filter(|s| s.run == run).map(|s| s.span.to).collect();
+        for scalar in prediction.scalars(tape) {
             let window = windows.partition_point(|end| *end <= scalar.time);
             for key in [Some(window), None] {
                 let group = groups.entry((run, scalar.reading, key)).or_insert((0.0, 0));
@@ -35,7 +34,10 @@ pub(crate) fn detection(stage: &Stage<'_>, judgement: &Judgement) -> Option<Dete
             }
         }
     }
-    let tests = groups.iter().filter(|(_, g)| g.1 >= LEAST).map(|(key, (cost, n))| (key, normal_score(*cost, *n)));
+    let tests = groups
+        .iter()
+        .filter(|(_, g)| g.1 >= LEAST)
+        .map(|(key, (cost, n))| (key, normal_score(cost / (1.0 + stage.doubt), *n)));
     let count = tests.clone().count();
     let ((run, reading, window), value) = tests.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let tape = &stage.tapes[*run];

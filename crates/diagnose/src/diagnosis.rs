@@ -36,6 +36,12 @@ pub struct Diagnosis {
     pub effects: Vec<Found>,
     /// How well the nominal and the corrected model predict.
     pub error: Errors,
+    /// Share of the mismatch that the effects explain on runs left out of the fit; none where nothing was found that helps.
+    #[serde(default)]
+    pub explained_share: Option<Explained>,
+    /// What the effects leave; none where nothing is detected in it.
+    #[serde(default)]
+    pub remainder: Option<Remainder>,
     /// What a reader must know besides: data quality, ridges, doubts. Sentences.
     #[serde(default)]
     pub remarks: Vec<String>,
@@ -53,9 +59,9 @@ pub enum Verdict {
     NoMismatch,
     /// With the effects added, it does.
     Explained,
-    /// The effects named explain a part; a significant part remains that nothing in the library explains.
+    /// The effects named help on runs that were left out of the fit (by how much: `explained_share`); a remainder is detected.
     PartlyExplained,
-    /// There is a significant mismatch and nothing in the library explains it.
+    /// There is a significant mismatch, and nothing in the library helps on runs that were left out of the fit.
     Unknown,
 }
 
@@ -68,6 +74,11 @@ impl Verdict {
             Self::PartlyExplained => "partly-explained",
             Self::Unknown => "unknown",
         }
+    }
+
+    /// Whether effects were found that help.
+    pub fn is_found(self) -> bool {
+        matches!(self, Self::Explained | Self::PartlyExplained)
     }
 
     /// Whether nothing remains unexplained: exit status 0.
@@ -184,6 +195,35 @@ pub struct Errors {
     pub windowed: BeforeAfter,
     /// Run by run.
     pub runs: Vec<RunError>,
+}
+
+/// Share of the mismatch that the effects found explain, in mean square beyond the noise, over windows each with an initial state of its own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Explained {
+    /// The share; below zero where they make it worse.
+    pub share: f64,
+    /// Its 95 % interval over resampled windows.
+    pub interval: [f64; 2],
+    /// Horizon: length of a window, s.
+    pub window_s: f64,
+    /// Runs over which it was judged.
+    pub runs: usize,
+    /// Whether these were left out of the fit; a recording may have none to leave out.
+    pub left_out: bool,
+    /// Files of the runs that are predicted clearly worse than by the nominal model.
+    #[serde(default)]
+    pub harmed: Vec<String>,
+}
+
+/// What is left of a mismatch by the effects that were found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Remainder {
+    /// Its error in windows over all runs, units of noise (1 is perfect).
+    #[serde(with = "finite")]
+    #[schemars(with = "Option<f64>")]
+    pub error: f64,
+    /// Where it is, when, and on what it depends, largest share first.
+    pub located: Vec<Located>,
 }
 
 /// An error of the nominal and of the corrected model.

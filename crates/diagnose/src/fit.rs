@@ -98,6 +98,8 @@ pub struct Fit {
     pub converged: bool,
     /// Linearisations made.
     pub iterations: usize,
+    /// Cost per scalar that is not told from a wrong noise level.
+    pub doubt: f64,
 }
 
 impl Fit {
@@ -116,9 +118,9 @@ impl Fit {
         self.excess() > (SIGMAS * self.spread()).max(self.least())
     }
 
-    /// Cost that the noise figures of data sheets do not vouch for.
+    /// Cost that is not told from a wrong noise level.
     pub fn least(&self) -> f64 {
-        LEAST * self.noise
+        self.doubt * self.noise
     }
 
     /// Whether any of a run is in it.
@@ -134,8 +136,6 @@ impl Fit {
 
 /// Excess in standard deviations below which nothing is left to explain.
 const SIGMAS: f64 = 4.0;
-/// Excess per scalar that data sheets' noise figures do not vouch for.
-const LEAST: f64 = 0.03;
 
 /// How far a fit goes.
 #[derive(Clone, Copy, Debug)]
@@ -198,6 +198,7 @@ pub fn fit(
         covariance: DMatrix::zeros(0, 0),
         converged: false,
         iterations: 0,
+        doubt: stage.doubt,
     };
     let mut sizes = first_sizes(&now.set);
     let mut last = Went { damping: 1e-3, ..Went::default() };
@@ -238,6 +239,7 @@ fn fit_starts(stage: &Stage<'_>, set: EffectSet, built: Built, segments: &[Segme
         converged: settled.iter().all(|s| s.converged),
         iterations: settled.iter().map(|s| s.iterations).max().unwrap_or(0),
         segments: settled.into_iter().map(|s| s.segment).collect(),
+        doubt: stage.doubt,
     }
 }
 

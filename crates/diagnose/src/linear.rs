@@ -110,6 +110,8 @@ pub struct Stage<'a> {
     pub pace: Pace,
     /// What was simulated so far.
     pub work: &'a Work<'a>,
+    /// Cost per scalar that is not told from a wrong noise level.
+    pub doubt: f64,
 }
 
 impl Stage<'_> {

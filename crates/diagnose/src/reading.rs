@@ -48,6 +48,11 @@ pub struct Reading {
 }
 
 impl Reading {
+    /// Whether it is an orientation.
+    pub fn is_orientation(&self) -> bool {
+        matches!(self.quantity, Quantity::Orientation(..))
+    }
+
     /// Scalars per sample.
     pub fn width(&self) -> usize {
         self.axes.len()

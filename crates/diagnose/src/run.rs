@@ -7,7 +7,7 @@
 
 use crate::catalogue::hypotheses;
 use crate::curves;
-use crate::diagnosis::{Diagnosis, Verdict};
+use crate::diagnosis::{Diagnosis, Explained, Verdict};
 use crate::error::DiagnoseError;
 use crate::evidence::{self, Evidence};
 use crate::facts::Facts;
@@ -16,10 +16,12 @@ use crate::hypothesis::Hypothesis;
 use crate::judge::{Judgement, judge};
 use crate::linear::{Segment, Stage, Steps};
 use crate::locate::{Located, locate, locate_in, places};
+use crate::noise::{self, Noise};
 use crate::pace::{self, Discretisation};
 use crate::plant::Plant;
 use crate::replay::Pace;
 use crate::search::{Attempt, Limits, search};
+use crate::share;
 use crate::standing::{Standing, fit_in_turns, follow};
 use crate::stretches::{self, Stretches, cut};
 use crate::tape::{Tape, load};
@@ -46,20 +48,20 @@ pub(crate) struct Findings {
     /// Missing forces that the corrected model leaves, as the nominal model sees them; none where nothing was corrected.
     pub left: Option<Located>,
     pub uncertainty: Uncertainty,
+    pub explained: Explained,
+    /// What was done to the recording before it was used, in words.
+    pub said: Vec<String>,
     pub timings: Vec<evidence::Stage>,
     pub discretisation: Discretisation,
 }
 
 /// Limits of the search.
-const LIMITS: Limits = Limits { effects: 3, refits: 5, ends: 2 };
+const LIMITS: Limits = Limits { effects: 3, refits: 6, ends: 2 };
 /// Error (units of noise) and share of the mismatch up to which what a corrected model leaves may be the errors of its own steps and starts.
 const RIGHT: f64 = 1.1;
 const NEXT_TO_NOTHING: f64 = 0.01;
-/// Error (units of noise) up to which a corrected model that leaves something is worth its name.
+/// Error (units of noise) up to which steps that suit a corrected model are looked for.
 const NEAR: f64 = 1.5;
-/// Share of the mismatch that may be left for a verdict of "partly explained".
-const PARTLY: f64 = 0.1;
-
 /// Diagnoses; `watch` hears how it goes.
 pub fn diagnose(
     scenario: Scenario,
@@ -73,10 +75,12 @@ pub fn diagnose(
     refuse_foreign(&inspection)?;
     let mut plant = Plant::new(scenario);
     let (tapes, built) = load(&mut plant, set)?;
-    let window = window_of(&set.rig, &tapes);
+    let (tapes, mut said) = noise::clean(set, tapes);
+    let window = window_of(set, &tapes);
     let own = plant.scenario.integrator.step_s;
-    let thinned: Vec<Tape> = tapes.iter().map(|t| t.thinned(ENOUGH)).collect();
-    let stage = Stage { tapes: &thinned, pace: Pace { step: own, free: own }, work: &work };
+    let thin = |tapes: &[Tape]| tapes.iter().map(|t| t.thinned(ENOUGH)).collect::<Vec<Tape>>();
+    let thinned = thin(&tapes);
+    let stage = Stage { tapes: &thinned, pace: Pace { step: own, free: own }, work: &work, doubt: noise::STATED };
     clock.stage("choose the step", 0.03);
     let segments = cut(&built, &thinned, Some(window), |t| t.role == Role::Fit);
     let discretisation = pace::choose(&stage, &built, &segments, own);
@@ -85,6 +89,21 @@ pub fn diagnose(
     let mut stage = Stage { pace, ..stage };
     clock.stage("fit the starts of the nominal model", 0.05);
     let nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort::STARTS)?;
+    let noise = Noise::estimate(&Stage { tapes: &tapes, ..stage }, &nominal, set);
+    said.extend(noise.words());
+    let tapes = noise.applied(&tapes);
+    let thinned = thin(&tapes);
+    stage = Stage { tapes: &thinned, doubt: noise.doubt, ..stage };
+    let nominal = match noise.factors.is_empty() {
+        true => nominal,
+        false => fit(
+            &stage,
+            &plant,
+            EffectSet::default(),
+            nominal.segments.into_iter().map(afresh).collect(),
+            Effort::STARTS,
+        )?,
+    };
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
     clock.stage("search", 0.25);
@@ -115,8 +134,9 @@ pub fn diagnose(
     let judgement = judge((&few, &stage), &plant, ([&nominal, &whole], &found), (window, follows))?;
     let left = left_by((&few, &thin), &plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
-    let verdict = verdict(&judgement, &found, follows);
-    // What explains nothing is not told, nor how sure its numbers are.
+    let (explained, helps) = share::explained(&judgement, &tapes, &found, window);
+    let verdict = verdict(&judgement, &found, (follows, helps));
+    // What helps nowhere is not told, nor how sure its numbers are.
     let uncertainty = match verdict {
         Verdict::Unknown => Uncertainty { covariance: found.covariance.clone(), ..Uncertainty::default() },
         _ => uncertainty::estimate(&stage, &plant, &found)?,
@@ -134,17 +154,23 @@ pub fn diagnose(
         judgement,
         left,
         uncertainty,
+        explained,
+        said,
         timings: clock.timings,
         discretisation,
     };
     Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
 }
 
+/// A segment whose derivatives are to be taken anew.
+fn afresh(segment: Segment) -> Segment {
+    Segment { columns: None, steps: Steps::default(), weight: 1.0, ..segment }
+}
+
 /// The last fit of what the search has found, to thinned samples first.
 fn fit_to_all((thin, all): (&Stage<'_>, &Stage<'_>), plant: &Plant, standing: Standing) -> Result<Fit, DiagnoseError> {
     let effects = standing.judge().set.clone();
     let segments = if standing.follows() { standing.whole.segments } else { standing.windows.segments };
-    let afresh = |s: Segment| Segment { columns: None, steps: Steps::default(), weight: 1.0, ..s };
     let found = fit_in_turns(thin, plant, effects, segments.into_iter().map(afresh).collect(), FINAL)?;
     if found.segments.iter().all(|s| all.count(s) <= thin.count(s)) {
         return Ok(found);
@@ -231,17 +257,14 @@ fn refuse_foreign(inspection: &record::inspect::Inspection) -> Result<(), Diagno
     if faults.is_empty() { Ok(()) } else { Err(DiagnoseError::Foreign(faults.join("; "))) }
 }
 
-/// Window in which a rig's predictions are judged, s; elsewhere a twentieth of a run.
-fn window_of(rig: &str, tapes: &[Tape]) -> f64 {
+/// Window in which predictions are judged, s: what the recording asks for, else a part of its longest run.
+fn window_of(set: &RecordingSet, tapes: &[Tape]) -> f64 {
     let longest = tapes.iter().map(|t| t.span.1 - t.span.0).fold(0.0, f64::max);
-    match rig {
-        "tumbler" => 30.0,
-        "air-table" => 2.0,
-        "stick-slip" => 1.0,
-        "arm-bench" | "dock-impact" => 0.5,
-        _ => longest / 20.0,
-    }
+    set.window_s.unwrap_or(longest / WINDOWS)
 }
+
+/// Windows of the longest run. Twice as many: slow effects fade in the noise of the initial states; half: more that is unstable goes astray.
+const WINDOWS: f64 = 10.0;
 
 /// Effects at joints where no force is missing are not looked at: an arm has many places.
 fn promising(located: &Located, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {
@@ -257,8 +280,8 @@ fn promising(located: &Located, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {
 /// Share of the best place's below which a joint is dull.
 const DULL: f64 = 0.15;
 
-/// What is left over the runs that were fitted, against what there was.
-fn verdict(judgement: &Judgement, found: &Fit, follows: bool) -> Verdict {
+/// What was found, from what it leaves and from what it does for runs left out of the fit: an effect that helps there is never dropped.
+fn verdict(judgement: &Judgement, found: &Fit, (follows, helps): (bool, bool)) -> Verdict {
     if !found.is_significant() {
         return if found.set.members.is_empty() { Verdict::NoMismatch } else { Verdict::Explained };
     }
@@ -268,7 +291,7 @@ fn verdict(judgement: &Judgement, found: &Fit, follows: bool) -> Verdict {
         Verdict::Unknown
     } else if left < NEXT_TO_NOTHING && after < RIGHT {
         Verdict::Explained
-    } else if left < PARTLY && after < NEAR {
+    } else if helps {
         Verdict::PartlyExplained
     } else {
         Verdict::Unknown

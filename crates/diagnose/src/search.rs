@@ -490,7 +490,11 @@ fn scores_of_interest<'s>(all: &[Hypothesis], scores: &'s [Score]) -> Vec<&'s Sc
 /// Screen points from which a hypothesis with many valleys is refitted.
 const VALLEYS: usize = 3;
 
-/// The hypotheses worth a refit: the most promising, one of each, nominal numbers among them if they promise anything.
+/// Places at which one law is refitted, and the share of the best one's promise from which on.
+const PLACES: usize = 3;
+const ALIKE: f64 = 0.8;
+
+/// The hypotheses worth a refit: the most promising, of each law the places that promise alike, nominal numbers among them if they promise anything.
 fn pick<'s>(
     (now, all): (&Fit, &[Hypothesis]),
     interesting: &[&'s Score],
@@ -501,8 +505,10 @@ fn pick<'s>(
     let worth = |s: &&&Score| s.score > (PROMISING * best).max(penalty * s.rank as f64).max(least);
     let mut picked: Vec<&Score> = Vec::new();
     for score in interesting.iter().filter(worth) {
-        let same = |p: &&&Score| all[p.hypothesis].name == all[score.hypothesis].name;
-        let is_new = !picked.iter().any(|p| same(&p));
+        let same = || picked.iter().filter(|p| all[p.hypothesis].name == all[score.hypothesis].name);
+        // The same law at another place is a rival where a screen, which is linear, does not tell them apart.
+        let is_rival = same().count() < PLACES && same().all(|p| score.score > ALIKE * p.score);
+        let is_new = same().all(|p| p.hypothesis != score.hypothesis) && is_rival;
         let is_valley = picked.iter().any(|p| p.hypothesis == score.hypothesis);
         if picked.len() < most && is_new || is_valley {
             picked.push(score);

@@ -5,6 +5,7 @@
 use crate::error::DiagnoseError;
 use crate::guess::guess;
 use crate::linear::Stage;
+use crate::noise;
 use crate::pace;
 use crate::plant::{Built, Plant};
 use crate::reading::Value;
@@ -43,7 +44,7 @@ pub fn synthesise(
     let (tapes, built) = load(&mut plant, like)?;
     let own = plant.scenario.integrator.step_s;
     let work = Work::new(&());
-    let stage = Stage { tapes: &tapes, pace: Pace { step: own, free: own }, work: &work };
+    let stage = Stage { tapes: &tapes, pace: Pace { step: own, free: own }, work: &work, doubt: noise::STATED };
     let found = pace::choose(&stage, &built, &cut(&built, &tapes, None, |_| true), own).pace;
     let pace = Pace { step: found.step / FINER, free: found.free / FINER };
     let of_run = |(recorded, tape): (&RecordedRun, &Tape)| -> Result<RecordedRun, DiagnoseError> {

@@ -1,6 +1,7 @@
 //! A recorded run, made ready for replay: commands, readings, and the order in which they come.
 
 use crate::error::DiagnoseError;
+use crate::noise;
 use crate::plant::{Built, Plant};
 use crate::reading::{Reading, Value};
 use crate::replay::Span;
@@ -94,9 +95,11 @@ impl Tape {
     pub fn thinned(&self, most: usize) -> Self {
         let thin = |r: &Reading| {
             let every = r.times.len().div_ceil(most).max(1);
+            let kept: Vec<usize> =
+                ticks_of(&r.times).into_iter().enumerate().filter(|(_, k)| k % every == 0).map(|k| k.0).collect();
             Reading {
-                times: r.times.iter().step_by(every).copied().collect(),
-                values: r.values.iter().step_by(every).copied().collect(),
+                times: kept.iter().map(|i| r.times[*i]).collect(),
+                values: kept.iter().map(|i| r.values[*i]).collect(),
                 ..r.clone()
             }
         };
@@ -104,6 +107,11 @@ impl Tape {
         let thinned = Self::assemble((&self.file, self.role), self.commands.clone(), readings);
         // A run ends where it ends, however thinly it is sampled.
         Self { index: self.index, span: self.span, ..thinned }
+    }
+
+    /// The same run with other samples.
+    pub(crate) fn with_readings(&self, readings: Vec<Reading>) -> Self {
+        Self { index: self.index, ..Self::assemble((&self.file, self.role), self.commands.clone(), readings) }
     }
 
     pub(crate) fn assemble((file, role): (&str, Role), commands: Vec<CommandTape>, readings: Vec<Reading>) -> Self {
@@ -141,18 +149,23 @@ pub(crate) fn load(plant: &mut Plant, set: &RecordingSet) -> Result<(Vec<Tape>, 
     channels.sort();
     channels.dedup();
     plant.attach(set, &built, channels)?;
-    for tape in &tapes {
-        if let Some(reading) = tape.readings.iter().find(|r| r.sigma <= 0.0) {
-            return Err(DiagnoseError::Channel {
-                channel: reading.channel.clone(),
-                file: tape.file.clone(),
-                reason: "its noise is not known; give it in [noise] of recording.toml (softdock inspect estimates it)"
-                    .to_owned(),
-            });
-        }
-    }
+    noise::refuse_silent(&tapes)?;
     Ok((tapes, plant.build(&[])?))
 }
+
+/// Ticks of an even clock at which samples were taken, those that were left out counted too, so that sensors which read together stay
+/// together when they are thinned; the numbers of the samples where the clock is not even.
+fn ticks_of(times: &[f64]) -> Vec<usize> {
+    let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    let step = steps.get(steps.len() / 2).copied().unwrap_or(1.0);
+    let since = |t: &f64| (t - times[0]) / step;
+    let is_even = times.iter().all(|t| (since(t) - since(t).round()).abs() < EVEN);
+    if is_even { times.iter().map(|t| since(t).round() as usize).collect() } else { (0..times.len()).collect() }
+}
+
+/// Share of a step by which an even clock's samples may be off their ticks.
+const EVEN: f64 = 0.25;
 
 /// `body.target.position.x` → (`body.target.position`, 0); scalars stand in component 0, w of a quaternion in 3.
 fn split_component(channel: &str) -> (&str, usize) {
@@ -180,7 +193,8 @@ fn readings_of(set: &RecordingSet, prefix: &str, quantity: Quantity, group: &[(u
         let orientation = is_orientation(&quantity);
         // Rounded components of a unit quaternion turn into an angle twice as large.
         let rounding = if orientation { 2.0 * quantum } else { quantum };
-        let sigma = (stated.unwrap_or(0.0).powi(2) + rounding * rounding / 12.0).sqrt();
+        let told = || noise::raw_sigma(&part.iter().map(|(_, s)| *s).collect::<Vec<_>>(), orientation);
+        let sigma = (stated.or_else(told).unwrap_or(0.0).powi(2) + rounding * rounding / 12.0).sqrt();
         let times = part[0].1.times.clone();
         let values = (0..times.len()).map(|i| value_at(part, i, orientation)).collect();
         let axes = if orientation { vec![0, 1, 2] } else { part.iter().map(|(k, _)| *k).collect() };

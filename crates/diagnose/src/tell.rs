@@ -2,7 +2,8 @@
 
 use crate::condition::{self, Features, find_features};
 use crate::diagnosis::{
-    BeforeAfter, Diagnosis, Errors, FORMAT, Found, Located as LocatedPlace, Rival, Role, RunError, StdErr, Verdict,
+    BeforeAfter, Diagnosis, Errors, FORMAT, Found, Located as LocatedPlace, Remainder, Rival, Role, RunError, StdErr,
+    Verdict,
 };
 use crate::evidence::{
     self, Evidence, Heat, HeatRow, Hypothesis, Identifiable, Level, Parameter, Remark, Status, bin_edges, mean_squares,
@@ -34,11 +35,15 @@ pub(crate) fn tell(
         located: located(findings, stage, &features),
         effects,
         error: errors(findings, stage),
+        explained_share: (findings.verdict.is_found() && !findings.found.set.members.is_empty())
+            .then(|| findings.explained.clone()),
+        remainder: remainder(findings, stage, &features),
         remarks: inspection
             .remarks
             .iter()
             .filter(|r| r.severity > record::Severity::Note)
             .map(|r| r.what.clone())
+            .chain(findings.said.iter().cloned())
             .chain(lost_runs(findings, stage))
             .collect(),
     };
@@ -51,7 +56,7 @@ pub(crate) fn tell(
         forces: crate::curves::forces(findings, stage),
         scatters: crate::curves::scatters(findings, &features),
         identifiability: identifiability(findings),
-        detection: crate::detect::detection(stage, &findings.judgement),
+        detection: crate::detect::detection(stage, &findings.judgement.windowed[0]),
         whiteness: crate::detect::whiteness(findings, stage),
         ranking: ranking(findings),
         parameters: parameters(findings),
@@ -60,6 +65,28 @@ pub(crate) fn tell(
     };
     (diagnosis, evidence)
 }
+
+/// What the effects leave, where something is detected in it.
+fn remainder(findings: &Findings, stage: &Stage<'_>, features: &Features) -> Option<Remainder> {
+    let left = findings.left.as_ref().filter(|_| findings.verdict == Verdict::PartlyExplained)?;
+    let corrected = &findings.judgement.windowed[1];
+    crate::detect::detection(stage, corrected).filter(|d| d.value > d.bound)?;
+    let (from_s, to_s) = condition::when(stage, &corrected.fit);
+    let place = |p: usize| {
+        let name = left.places[p].name.clone();
+        let depends = condition::dependence(features, &findings.nominal, left, &name);
+        let condition =
+            depends.map_or_else(|| condition_of(&name).to_owned(), |on| format!("{}; {on}", condition_of(&name)));
+        LocatedPlace { place: name, share: left.share(p), from_s, to_s, condition }
+    };
+    let mut ranked = left.ranked();
+    ranked.retain(|p| left.share(*p).is_finite() && left.share(*p) > 0.0);
+    let error = findings.judgement.rms(true, |_| true)[1];
+    Some(Remainder { error, located: ranked.into_iter().take(PLACES).map(place).collect() })
+}
+
+/// Places of a remainder that are told.
+const PLACES: usize = 3;
 
 /// Runs that the corrected model follows up to an instant only.
 fn lost_runs(findings: &Findings, stage: &Stage<'_>) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! The verdict in one paragraph of plain words, from the data.
 
-use crate::diagnosis::{Diagnosis, Found, Located, ParamValue, Rival, StdErr, Verdict};
+use crate::diagnosis::{Diagnosis, Explained, Found, Located, ParamValue, Rival, StdErr, Verdict};
 use crate::evidence::Evidence;
 use crate::number::{noise, percent, with_error};
 use crate::vocabulary::{plain_name, unit};
@@ -105,14 +105,39 @@ fn explanation(diagnosis: &Diagnosis) -> Option<String> {
     match (diagnosis.verdict, effects.is_empty()) {
         (Verdict::NoMismatch, _) => None,
         (Verdict::Explained, false) => Some(format!("It is explained by {list}.")),
-        (Verdict::PartlyExplained, false) => Some(format!(
-            "A part of it is explained by {list}; a significant part remains that no effect of the library explains."
-        )),
+        (Verdict::PartlyExplained, false) => {
+            let part = diagnosis.explained_share.as_ref().map_or_else(|| "A part".to_owned(), share_words);
+            Some(format!("{part} of it is explained by {list}. {}", remainder_words(diagnosis)))
+        }
         _ => Some(
-            "No effect of the library explains it, alone or with others; what the residual itself shows stands below."
+            "No effect of the library helps on runs that were left out of the fit, alone or with others; what the residual itself shows stands \
+             below."
                 .to_owned(),
         ),
     }
+}
+
+/// "99.6 % (95 % interval 99.4 to 99.7 %)".
+pub fn share_words(explained: &Explained) -> String {
+    // As many digits as tell it from all of it.
+    let decimals = |share: f64| (-(1.0 - share).abs().max(1e-6).log10()).ceil().max(2.0) as usize - 2;
+    let percent = |share: f64| format!("{:.*}", decimals(share), 100.0 * share);
+    let [low, high] = explained.interval;
+    format!("{} % (95 % interval {} to {} %)", percent(explained.share), percent(low), percent(high))
+}
+
+/// What is left, where, when, and on what it depends.
+fn remainder_words(diagnosis: &Diagnosis) -> String {
+    let Some(remainder) = &diagnosis.remainder else { return "Nothing is detected in the remainder.".to_owned() };
+    let error = noise(remainder.error);
+    let Some(first) = remainder.located.first() else {
+        return format!("What remains, {error} times the noise in windows, has no place.");
+    };
+    let on = if first.condition == "always" { String::new() } else { format!(" ({})", first.condition) };
+    let place = place_words(&first.place);
+    format!(
+        "What remains, {error} times the noise in windows, sits most at {place}{on}; no effect of the library takes it away."
+    )
 }
 
 /// "viscous friction at joint_3 (b = 0.9012 ± 0.0011 N m s/rad)".

@@ -32,6 +32,7 @@ fn set(rig: &str, noise: &[(&str, f64)], runs: Vec<Vec<Series>>) -> RecordingSet
     };
     RecordingSet {
         rig: rig.to_owned(),
+        window_s: None,
         title: "planted".to_owned(),
         noise: noise.iter().map(|(channel, sigma)| ((*channel).to_owned(), *sigma)).collect(),
         runs: runs.into_iter().enumerate().map(run).collect(),

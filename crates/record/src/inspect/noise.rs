@@ -39,6 +39,18 @@ pub fn white_noise(series: &[&Series]) -> Option<f64> {
     Some((factor * variance - q * q / 12.0).max(0.0).sqrt())
 }
 
+/// Variance of the white part of some evenly sampled stretches of one scalar, such as the residuals of a model: what is smooth in them does
+/// not count, nor do single spikes. And how many differences it was told from. None: too few samples.
+pub fn white_variance(stretches: &[&[f64]]) -> Option<(f64, usize)> {
+    let estimate = |order: usize| -> Option<(f64, usize)> {
+        let of = |s: &&[f64]| s.windows(order + 1).map(|w| difference(w).powi(2)).collect::<Vec<f64>>();
+        let squares: Vec<f64> = stretches.iter().flat_map(of).filter(|d| d.is_finite()).collect();
+        let count = squares.len();
+        Some((trimmed_mean(squares)? / (binomial(2 * order, order) * TRIMMED[0]), count))
+    };
+    ORDERS.filter_map(estimate).min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
 /// Difference of the highest order that these values allow.
 fn difference(values: &[f64]) -> f64 {
     let order = values.len() - 1;

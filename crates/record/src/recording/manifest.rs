@@ -58,6 +58,7 @@ pub(super) struct Manifest {
     pub(super) path: PathBuf,
     pub(super) folder: PathBuf,
     pub(super) rig: String,
+    pub(super) window_s: Option<f64>,
     pub(super) title: String,
     pub(super) noise: BTreeMap<String, f64>,
     pub(super) runs: Vec<RunEntry>,
@@ -106,6 +107,7 @@ fn of_one_file(file: &Path) -> Manifest {
         path: file.to_owned(),
         folder: parent(file),
         rig: String::new(),
+        window_s: None,
         title: name.clone(),
         noise: BTreeMap::new(),
         runs: vec![RunEntry { file: name, role: Role::Fit, note: String::new(), groups: None }],
@@ -136,7 +138,11 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn read(&self, folder: PathBuf) -> Result<Manifest, RecordError> {
         let table: Table = self.text.parse().map_err(|e: toml::de::Error| RecordError::table(&self.path, e))?;
-        self.check_keys(&table, "the file", &["format", "rig", "title", "noise", "run", "time", "channels"])?;
+        self.check_keys(
+            &table,
+            "the file",
+            &["format", "rig", "title", "window_s", "noise", "run", "time", "channels"],
+        )?;
         self.check_format(&table)?;
         let (time_column, time_factor, group) = self.time(&table)?;
         let (noise, remarks) = self.noise(&table)?;
@@ -146,6 +152,7 @@ impl Reader<'_> {
                 self.wrong("rig", "has no rig: name the rig card that describes the hardware, rig = \"…\"")
             })?,
             title: self.text_of(&table, "title", "the file")?.unwrap_or_default(),
+            window_s: self.window(&table)?,
             noise,
             runs: self.runs(&table, group.is_some())?,
             time_column,
@@ -155,6 +162,15 @@ impl Reader<'_> {
             remarks,
             path: self.path.clone(),
         })
+    }
+
+    fn window(&self, table: &Table) -> Result<Option<f64>, RecordError> {
+        let Some(value) = table.get("window_s") else { return Ok(None) };
+        let window = number(value).filter(|w| w.is_finite() && *w > 0.0);
+        let wrong = || {
+            self.wrong("window_s", format!("window_s = {value} is not a length of time; it is a number above 0, in s"))
+        };
+        window.map(Some).ok_or_else(wrong)
     }
 
     fn check_format(&self, table: &Table) -> Result<(), RecordError> {

@@ -35,6 +35,8 @@ pub struct RecordingSet {
     pub rig: String,
     /// One line for people.
     pub title: String,
+    /// Length of the windows in which a model's predictions are judged, s, where the recording asks for one.
+    pub window_s: Option<f64>,
     /// Standard deviation of the white noise from the data sheet, by channel or channel prefix, in the channel's SI
     /// unit (orientation: rad about each axis).
     pub noise: BTreeMap<String, f64>,
@@ -118,6 +120,7 @@ impl RecordingSet {
         let mut set = Self {
             folder: manifest.folder.clone(),
             rig: manifest.rig.clone(),
+            window_s: manifest.window_s,
             title: manifest.title.clone(),
             noise: manifest.noise.clone(),
             ..Self::default()

@@ -20,7 +20,9 @@ impl RecordingSet {
 
     fn manifest(&self) -> String {
         let quoted = |text: &str| Value::from(text).to_string();
-        let mut text = format!("format = 1\nrig = {}\ntitle = {}\n\n[noise]\n", quoted(&self.rig), quoted(&self.title));
+        let mut text = format!("format = 1\nrig = {}\ntitle = {}\n", quoted(&self.rig), quoted(&self.title));
+        text += &self.window_s.map_or_else(String::new, |window| format!("window_s = {window}\n"));
+        text += "\n[noise]\n";
         for (channel, sigma) in &self.noise {
             let _ = writeln!(text, "{} = {sigma:e}", quoted(channel));
         }
@@ -85,6 +87,7 @@ mod tests {
         let run = RecordedRun { file: "run-01.csv".into(), role: Role::Holdout, note: "a \"note\"".into(), series };
         let set = RecordingSet {
             rig: "arm".into(),
+            window_s: None,
             title: "one joint".into(),
             noise: [("joint.elbow.position".to_owned(), 2e-5)].into(),
             runs: vec![run],

@@ -1,0 +1,307 @@
+//! The noise of the sensors, as the samples themselves tell it; a data sheet's figure is only where one begins.
+//!
+//! Before anything is fitted, samples that no sensor meant are left out: readings that stand alone (spikes) and stretches in which a channel
+//! stood still at one value (stuck, or clipped at a limit). A channel without a stated σ has that of its own differences.
+//!
+//! After the nominal model was fitted in windows, what its residuals r hold of white noise is known far better than from the raw samples: a
+//! wrong model leaves what is smooth from one sample to the next, which differences of second to sixth order take away,
+//!
+//!   s² = min over k of ⟨(Δᵏ r)²⟩ / (2k choose k),      σ ← s σ
+//!
+//! with the mean over the smaller three fifths (impacts do not count). A stated σ is believed within [`SURE`], and never left by more than
+//! [`FARTHEST`]: beyond that it is not the noise that differs.
+
+use crate::error::DiagnoseError;
+use crate::fit::Fit;
+use crate::linear::Stage;
+use crate::reading::Reading;
+use crate::tape::Tape;
+use rayon::prelude::*;
+use record::inspect::{Stuck, spikes, stuck, white_noise, white_variance};
+use record::{RecordedRun, RecordingSet, Role, Series};
+use std::collections::BTreeMap;
+
+/// Relative difference from a stated σ that the samples must show to be believed against it: an estimate is sure to some per cent.
+/// Half: σ that are right are replaced by estimates at every second channel; twice: σ wrong by 5 % stay.
+const SURE: f64 = 0.03;
+/// Factor by which samples may differ from a stated σ. Twice the prior's ±20 % at five standard deviations.
+const FARTHEST: f64 = 2.0;
+/// Share of a channel's samples that may be left out as spikes; where more stand alone, standing alone is how the channel is.
+const SPIKES: f64 = 0.02;
+/// Share of a component's samples from which on it is left out whole rather than sample by sample with the others of its sensor.
+const DEAD: f64 = 0.2;
+/// Samples left out beside a clipped stretch: the way into the limit is bent too.
+const MARGIN: usize = 2;
+/// Cost per scalar that a stated σ does not vouch for: what data sheets round.
+pub(crate) const STATED: f64 = 0.03;
+/// Relative standard deviation of a variance told from n differences is this over √n: √2 of white numbers, as much again for the
+/// overlap of differences and for the trimmed mean.
+const SPREAD: f64 = 2.8;
+/// Standard deviations of an estimated noise level that are not told from a mismatch.
+const DOUBT: f64 = 3.0;
+/// Pauses of more than so many median steps end a stretch of neighbours.
+const PAUSE: f64 = 1.6;
+
+/// White noise of the components of one reading, from their raw samples; zero where it is below the rounding.
+pub(crate) fn raw_sigma(parts: &[&Series], is_orientation: bool) -> Option<f64> {
+    if is_orientation {
+        return white_noise(parts);
+    }
+    let mut each: Vec<f64> = parts.iter().filter_map(|s| white_noise(&[s])).collect();
+    each.sort_by(f64::total_cmp);
+    each.get(each.len() / 2).copied()
+}
+
+/// The runs without the samples that no sensor meant, and what was left out, in words.
+pub(crate) fn clean(set: &RecordingSet, tapes: Vec<Tape>) -> (Vec<Tape>, Vec<String>) {
+    let mut said = LeftOut::default();
+    let cleaned = tapes.into_iter().map(|tape| match set.runs.get(tape.index) {
+        Some(run) => clean_run(run, tape, &mut said),
+        None => tape,
+    });
+    (cleaned.collect(), said.words())
+}
+
+/// Samples that were left out of all runs, by channel.
+#[derive(Default)]
+struct LeftOut {
+    alone: BTreeMap<String, usize>,
+    still: BTreeMap<String, (usize, bool)>,
+}
+
+impl LeftOut {
+    fn add(&mut self, channel: &str, bad: &Bad) {
+        *self.alone.entry(channel.to_owned()).or_default() += bad.alone;
+        let known = self.still.entry(channel.to_owned()).or_default();
+        (known.0, known.1) = (known.0 + bad.still, known.1 || bad.at_limit);
+    }
+
+    fn words(&self) -> Vec<String> {
+        let samples = |n: usize| if n == 1 { "1 reading".to_owned() } else { format!("{n} readings") };
+        let alone = self.alone.iter().filter(|(_, n)| **n > 0);
+        let alone = alone.map(|(channel, n)| format!("{channel}: left out {} that stand alone.", samples(*n)));
+        let still = self.still.iter().filter(|(_, (n, _))| *n > 0).map(|(channel, (n, at_limit))| {
+            let how = if *at_limit { "at its limit, clipped" } else { "while it stood still" };
+            format!("{channel}: left out {} {how}.", samples(*n))
+        });
+        alone.chain(still).collect()
+    }
+}
+
+fn clean_run(run: &RecordedRun, tape: Tape, said: &mut LeftOut) -> Tape {
+    let cleaned: Vec<Option<Reading>> = tape.readings.iter().map(|r| clean_reading(run, r, said)).collect();
+    if cleaned.iter().all(Option::is_none) {
+        return tape;
+    }
+    let readings = tape.readings.iter().zip(cleaned).map(|(old, new)| new.unwrap_or_else(|| old.clone()));
+    tape.with_readings(readings.collect())
+}
+
+/// A reading without what no sensor meant; none where nothing is left out, or nothing would be left.
+fn clean_reading(run: &RecordedRun, reading: &Reading, said: &mut LeftOut) -> Option<Reading> {
+    let is_orientation = reading.is_orientation();
+    let parts: Vec<usize> = if is_orientation { (0..4).collect() } else { reading.axes.clone() };
+    let bad_of = |axis: &usize| {
+        let part = if is_orientation { ["w", "x", "y", "z"][*axis] } else { ["x", "y", "z"][*axis] };
+        let series = run.series(&reading.channel).or_else(|| run.series(&format!("{}.{part}", reading.channel)));
+        let series = series.filter(|s| s.times == reading.times)?;
+        // About an axis a turn is twice as large as it is in the quaternion.
+        let noise = if is_orientation { 0.5 * reading.sigma } else { reading.sigma };
+        Some(find_bad(series, noise))
+    };
+    let found: Vec<Bad> = parts.iter().map(bad_of).collect::<Option<_>>()?;
+    let is_dead = |bad: &Bad| !is_orientation && bad.share() > DEAD;
+    let axes: Vec<usize> = if is_orientation {
+        reading.axes.clone()
+    } else {
+        parts.iter().zip(&found).filter(|(_, b)| !is_dead(b)).map(|p| *p.0).collect()
+    };
+    let is_bad = |i: usize| found.iter().any(|b| !is_dead(b) && b.samples[i]);
+    let kept: Vec<usize> = (0..reading.times.len()).filter(|i| !is_bad(*i)).collect();
+    if axes.is_empty() || kept.is_empty() || (kept.len(), axes.len()) == (reading.times.len(), reading.axes.len()) {
+        return None;
+    }
+    found.iter().for_each(|b| said.add(&reading.channel, b));
+    let times = kept.iter().map(|i| reading.times[*i]).collect();
+    Some(Reading { axes, times, values: kept.iter().map(|i| reading.values[*i]).collect(), ..reading.clone() })
+}
+
+/// What is wrong with the samples of one component.
+struct Bad {
+    samples: Vec<bool>,
+    alone: usize,
+    still: usize,
+    at_limit: bool,
+}
+
+impl Bad {
+    fn share(&self) -> f64 {
+        self.samples.iter().filter(|b| **b).count() as f64 / self.samples.len().max(1) as f64
+    }
+}
+
+fn find_bad(series: &Series, noise: f64) -> Bad {
+    let mut samples = vec![false; series.len()];
+    let at = |t: f64| series.times.partition_point(|s| *s < t);
+    let alone = spikes(series, noise);
+    let alone = if alone.len() as f64 <= SPIKES * series.len() as f64 { alone } else { Vec::new() };
+    alone.iter().for_each(|s| samples[at(s.t)] = true);
+    let still: Vec<Stuck> = stuck(series, noise);
+    for one in &still {
+        let margin = if one.at_limit { MARGIN } else { 0 };
+        let end = (at(one.to_s) + 1 + margin).min(samples.len());
+        samples[at(one.from_s).saturating_sub(margin)..end].fill(true);
+    }
+    Bad {
+        samples,
+        alone: alone.len(),
+        still: still.iter().map(|s| s.samples).sum(),
+        at_limit: still.iter().any(|s| s.at_limit),
+    }
+}
+
+/// What the residuals of a model say of the noise.
+#[derive(Clone, Debug)]
+pub(crate) struct Noise {
+    /// By channel: factor of its σ, where that is another.
+    pub factors: BTreeMap<String, f64>,
+    /// Cost per scalar that is not told from a wrong noise level.
+    pub doubt: f64,
+}
+
+impl Noise {
+    /// From the residuals of a model's windows.
+    pub fn estimate(stage: &Stage<'_>, nominal: &Fit, set: &RecordingSet) -> Self {
+        let residuals: Vec<Vec<Stretch>> =
+            nominal.segments.par_iter().map(|s| stretches_of(stage, nominal, s)).collect();
+        let mut by_channel: BTreeMap<String, Vec<Vec<f64>>> = BTreeMap::new();
+        for stretch in residuals.into_iter().flatten() {
+            by_channel.entry(stretch.channel).or_default().push(stretch.values);
+        }
+        let (mut factors, mut variance, mut all) = (BTreeMap::new(), 0.0, 0.0);
+        for (channel, stretches) in &by_channel {
+            let samples: f64 = stretches.iter().map(|s| s.len() as f64).sum();
+            all += samples;
+            let slices: Vec<&[f64]> = stretches.iter().map(Vec::as_slice).collect();
+            let Some((s2, count)) = white_variance(&slices) else { continue };
+            let is_stated = set.runs.iter().flat_map(|r| &r.series).any(|s| {
+                s.channel.strip_prefix(channel.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+                    && (set.sigma(&s.channel).or_else(|| set.sigma(channel))).is_some()
+            });
+            let square: f64 = stretches.iter().flatten().map(|r| r * r).sum();
+            let found = Found { white: s2.sqrt(), whole: (square / f64::max(samples, 1.0)).sqrt() };
+            let Some(factor) = factor_of(found, is_stated) else { continue };
+            variance += (samples * SPREAD).powi(2) / count as f64;
+            factors.insert(channel.clone(), factor);
+        }
+        let doubt = STATED + if factors.is_empty() { 0.0 } else { DOUBT * variance.sqrt() / f64::max(all, 1.0) };
+        Self { factors, doubt }
+    }
+
+    /// The runs with the noise that was found.
+    pub fn applied(&self, tapes: &[Tape]) -> Vec<Tape> {
+        let of = |tape: &Tape| {
+            let mut tape = tape.clone();
+            for reading in &mut tape.readings {
+                reading.sigma *= self.factors.get(&reading.channel).copied().unwrap_or(1.0);
+            }
+            tape
+        };
+        tapes.iter().map(of).collect()
+    }
+
+    /// What was found, in words.
+    pub fn words(&self) -> Vec<String> {
+        let one = |(channel, factor): (&String, &f64)| {
+            format!(
+                "{channel}: its noise is {factor:.2} times what was stated or its raw samples show; that figure was used."
+            )
+        };
+        self.factors.iter().map(one).collect()
+    }
+}
+
+/// Root mean squares of a channel's residuals, units of the σ in use.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    /// Of what is white in them.
+    white: f64,
+    /// Of all of them.
+    whole: f64,
+}
+
+/// The factor of a channel's σ; none where the samples do not speak against it.
+fn factor_of(Found { white, whole }: Found, is_stated: bool) -> Option<f64> {
+    let s = match is_stated {
+        // Noise that is less than stated from one sample to the next may be coloured: only what is less as a whole is less.
+        true => white.max(whole.min(1.0)),
+        // Raw samples bound the noise from above.
+        false => white.min(1.0),
+    };
+    // More than twice the stated noise from one sample to the next is a mismatch that is fast.
+    let is_beyond = is_stated && !(1.0 / FARTHEST..=FARTHEST).contains(&s);
+    (s.is_finite() && s > 0.0 && (s - 1.0).abs() >= SURE && !is_beyond).then_some(s)
+}
+
+/// Neighbouring residuals of one component.
+struct Stretch {
+    channel: String,
+    values: Vec<f64>,
+}
+
+fn stretches_of(stage: &Stage<'_>, fit: &Fit, segment: &crate::linear::Segment) -> Vec<Stretch> {
+    let tape = &stage.tapes[segment.run];
+    let r = stage.residuals(&fit.built, segment);
+    if tape.role != Role::Fit || r.iter().any(|x| !x.is_finite()) {
+        return Vec::new();
+    }
+    let range = tape.range(segment.span);
+    let mut all = Vec::new();
+    for (k, reading) in tape.readings.iter().enumerate() {
+        let own: Vec<usize> = range.clone().filter(|i| tape.events[*i].reading as usize == k).collect();
+        let mut steps: Vec<f64> = own.windows(2).map(|w| tape.events[w[1]].time - tape.events[w[0]].time).collect();
+        steps.sort_by(f64::total_cmp);
+        let pause = PAUSE * steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
+        let is_next = |a: &usize, b: &usize| tape.events[*b].time - tape.events[*a].time <= pause;
+        for stretch in own.chunk_by(is_next) {
+            for component in 0..reading.width() {
+                let value = |i: &usize| r[tape.offsets[*i] - tape.offsets[range.start] + component];
+                all.push(Stretch { channel: reading.channel.clone(), values: stretch.iter().map(value).collect() });
+            }
+        }
+    }
+    all
+}
+
+/// Refuses a channel whose noise neither the recording nor its samples tell.
+pub(crate) fn refuse_silent(tapes: &[Tape]) -> Result<(), DiagnoseError> {
+    for tape in tapes {
+        if let Some(reading) = tape.readings.iter().find(|r| r.sigma <= 0.0 || r.sigma.is_nan()) {
+            return Err(DiagnoseError::Channel {
+                channel: reading.channel.clone(),
+                file: tape.file.clone(),
+                reason: "shows no noise at all, nor rounding, and none is stated; give it in [noise] of recording.toml"
+                    .to_owned(),
+            });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stated_figure_is_believed_within_some_per_cent_and_never_left_by_far() {
+        let factor = |white, whole, is_stated| factor_of(Found { white, whole }, is_stated);
+        assert_eq!(factor(1.02, 1.02, true), None);
+        assert_eq!(factor(1.43, 1.43, true), Some(1.43));
+        assert_eq!(factor(0.67, 0.67, true), Some(0.67));
+        assert_eq!([factor(5.0, 5.0, true), factor(0.3, 0.3, true), factor(f64::NAN, 1.0, true)], [None; 3]);
+        // Coloured: less from one sample to the next, as much as a whole.
+        assert_eq!(factor(0.45, 1.0, true), None);
+        // Raw samples bound it from above.
+        assert_eq!([factor(3.0, 3.0, false), factor(0.2, 9.0, false)], [None, Some(0.2)]);
+    }
+}

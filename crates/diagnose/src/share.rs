@@ -1,0 +1,136 @@
+//! How much of the mismatch a corrected model explains, judged in windows of runs that its fit has not seen.
+//!
+//!   S = (E₀ − E₁)/(E₀ − 1)
+//!
+//! E₀ and E₁ are mean squares in units of noise of the nominal and of the corrected model, each window with an initial state of its own under
+//! either model; noise alone leaves 1. Where no run was left out, those of the fit stand for them, and that is said. The interval is
+//! the middle 95 % of S over resampled windows, run by run (stratified bootstrap: Efron and Tibshirani 1993, ch. 8). A model *helps*
+//! where that interval lies above zero and no run is predicted worse than before: a law that mends one run and breaks another is none.
+
+use crate::diagnosis::Explained;
+use crate::fit::Fit;
+use crate::judge::Judgement;
+use crate::tape::Tape;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use record::Role;
+use std::collections::BTreeMap;
+
+/// Resampled sets of windows. Half and twice: the ends of the interval move by less than a tenth of its width.
+const DRAWS: usize = 1000;
+/// Chance that the share lies below, and above, the interval.
+const TAIL: f64 = 0.025;
+/// Growth of a run's mean square above noise that is harm. 1 would call a hair's breadth harm, 2 leaves a run twice as wrong.
+const HARM: f64 = 1.2;
+/// The same in standard deviations of what noise alone leaves.
+const SIGMAS: f64 = 4.0;
+
+/// A window's squared residuals before and after, and how many there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Window {
+    before: f64,
+    after: f64,
+    count: f64,
+}
+
+impl Window {
+    fn plus(self, other: &Self) -> Self {
+        Self { before: self.before + other.before, after: self.after + other.after, count: self.count + other.count }
+    }
+
+    fn share(&self) -> f64 {
+        let mismatch = self.before - self.count;
+        if mismatch > 0.0 { (self.before - self.after) / mismatch } else { 0.0 }
+    }
+
+    /// Whether the corrected model is clearly worse; `doubt`: cost per scalar that is not told from a wrong noise level.
+    fn is_harmed(&self, doubt: f64) -> bool {
+        let [before, after] = [self.before, self.after].map(|cost| cost - self.count);
+        after > HARM * before.max(0.0) + SIGMAS * (2.0 * self.count).sqrt() + doubt * self.count
+    }
+}
+
+/// What the corrected model explains, and whether it helps.
+pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, window_s: f64) -> (Explained, bool) {
+    let left_out = tapes.iter().any(|t| t.role == Role::Holdout);
+    let is_judged = |run: usize| (tapes[run].role == Role::Holdout) == left_out;
+    let runs = windows_of(judgement, is_judged);
+    let all = sum(runs.values().flatten());
+    let interval = interval(&runs);
+    let harmed = runs.iter().filter(|(_, w)| sum(w.iter()).is_harmed(found.doubt));
+    let harmed: Vec<String> = harmed.map(|(run, _)| tapes[*run].file.clone()).collect();
+    let helps = interval[0] > 0.0 && harmed.is_empty();
+    (Explained { share: all.share(), interval, window_s, runs: runs.len(), left_out, harmed }, helps)
+}
+
+/// Windows by run.
+fn windows_of(judgement: &Judgement, wanted: impl Fn(usize) -> bool) -> BTreeMap<usize, Vec<Window>> {
+    let [before, after] = &judgement.windowed;
+    let mut runs: BTreeMap<usize, Vec<Window>> = BTreeMap::new();
+    let pairs = before.fit.segments.iter().zip(&before.residuals).filter(|(s, _)| wanted(s.run));
+    for (segment, r) in pairs {
+        let is_same = |s: &crate::linear::Segment| s.run == segment.run && s.span == segment.span;
+        let Some(at) = after.fit.segments.iter().position(is_same) else { continue };
+        let window =
+            Window { before: r.norm_squared(), after: after.residuals[at].norm_squared(), count: r.len() as f64 };
+        // A window that neither model can be followed through says nothing of either.
+        if window.before.is_finite() || window.after.is_finite() {
+            let finite = |cost: f64| if cost.is_finite() { cost } else { window.count * DIVERGED };
+            let window = Window { before: finite(window.before), after: finite(window.after), ..window };
+            runs.entry(segment.run).or_default().push(window);
+        }
+    }
+    runs
+}
+
+/// Mean square that stands for a replay that left the range of numbers.
+const DIVERGED: f64 = 1e12;
+
+fn sum<'a>(windows: impl Iterator<Item = &'a Window>) -> Window {
+    windows.fold(Window::default(), |sum, w| sum.plus(w))
+}
+
+fn interval(runs: &BTreeMap<usize, Vec<Window>>) -> [f64; 2] {
+    let mut random = ChaCha8Rng::seed_from_u64(0);
+    let mut draw = |windows: &Vec<Window>| {
+        let pick = |_| (random.next_u64() % windows.len() as u64) as usize;
+        (0..windows.len()).map(pick).fold(Window::default(), |sum, i| sum.plus(&windows[i]))
+    };
+    let mut shares: Vec<f64> =
+        (0..DRAWS).map(|_| runs.values().fold(Window::default(), |sum, w| sum.plus(&draw(w))).share()).collect();
+    shares.sort_by(f64::total_cmp);
+    let at = |p: f64| shares[((DRAWS - 1) as f64 * p).round() as usize];
+    [at(TAIL), at(1.0 - TAIL)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn window(before: f64, after: f64) -> Window {
+        Window { before, after, count: 100.0 }
+    }
+
+    #[test]
+    fn what_takes_all_but_noise_away_explains_all() {
+        assert_eq!(window(1100.0, 100.0).share(), 1.0);
+        assert_eq!(window(1100.0, 600.0).share(), 0.5);
+        assert_eq!(window(90.0, 80.0).share(), 0.0);
+        let runs = BTreeMap::from([(0, vec![window(1100.0, 100.0); 5]), (1, vec![window(300.0, 100.0); 5])]);
+        assert_eq!(interval(&runs), [1.0, 1.0]);
+    }
+
+    #[test]
+    fn an_interval_tells_windows_that_contradict_each_other() {
+        let runs = BTreeMap::from([(0, vec![window(1100.0, 100.0), window(1100.0, 2100.0)])]);
+        let [low, high] = interval(&runs);
+        assert!(low < -0.9 && high > 0.9, "{low} {high}");
+    }
+
+    #[test]
+    fn a_run_that_is_predicted_worse_is_harmed() {
+        assert!(window(200.0, 500.0).is_harmed(0.03));
+        assert!(!window(500.0, 520.0).is_harmed(0.03));
+        assert!(!window(100.0, 120.0).is_harmed(0.03));
+    }
+}
