@@ -284,7 +284,33 @@ impl Role {
     }
 }
 
+/// The error that says most: of whole runs where the model predicts these, else in windows, the horizon at which it does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Judged {
+    /// Before and after.
+    pub error: BeforeAfter,
+    /// Whether of runs left out of the fit.
+    pub left_out: bool,
+    /// Length of the windows, s; none for whole runs.
+    pub window_s: Option<f64>,
+}
+
+/// Growth of an error from windows to whole runs beyond which these are not predictable: deviations grow, whatever the model. Half and twice
+/// move no set of the practice recordings but those that are chaotic.
+const PREDICTABLE: f64 = 5.0;
+
 impl Diagnosis {
+    /// The error that the headline tells.
+    pub fn judged(&self) -> Judged {
+        let Errors { fit, holdout, windowed, window_s, .. } = &self.error;
+        let free = holdout.unwrap_or(*fit);
+        let is_predictable = !(free.after > PREDICTABLE * windowed.after.max(1.0)) && free.after.is_finite();
+        match is_predictable {
+            true => Judged { error: free, left_out: holdout.is_some(), window_s: None },
+            false => Judged { error: *windowed, left_out: holdout.is_some(), window_s: Some(*window_s) },
+        }
+    }
+
     /// The JSON document, indented, with a newline at its end.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         Ok(serde_json::to_string_pretty(self)? + "\n")

@@ -30,6 +30,14 @@ pub(crate) fn is_near(stage: &Stage<'_>, built: &Built, segment: &Segment) -> bo
     cost <= NEAR * NEAR * segment.weight * stage.count(segment) as f64
 }
 
+/// Share of a fit's segments whose initial states may stand in local minima.
+pub(crate) fn calc_poor_share(stage: &Stage<'_>, fit: &Fit) -> f64 {
+    let is_poor =
+        |s: &Segment| stage.residuals(&fit.built, s).norm_squared() > POOR_WINDOW * s.weight * stage.count(s) as f64;
+    let poor: Vec<bool> = fit.segments.par_iter().map(is_poor).collect();
+    poor.iter().filter(|p| **p).count() as f64 / poor.len().max(1) as f64
+}
+
 /// Share of a fit's segments that are not near the model.
 pub(crate) fn calc_share(stage: &Stage<'_>, fit: &Fit) -> f64 {
     calc_lost(&find_near(stage, fit))

@@ -58,21 +58,19 @@ fn has_any(scenario: &Scenario, found: &[Found]) -> bool {
 }
 
 fn header(scenario: &Scenario, diagnosis: &Diagnosis) -> String {
-    let error = &diagnosis.error;
-    let (judged, whose) = match error.holdout {
-        Some(holdout) => (holdout, "runs that were not used"),
-        None => (error.fit, "the runs that were used"),
-    };
+    let judged = diagnosis.judged();
+    let whose = if judged.left_out { "runs that were not used" } else { "the runs that were used" };
+    let horizon =
+        judged.window_s.map_or_else(String::new, |w| format!(", in windows of {} s", crate::number::short(w)));
+    let (before, after) = (noise(judged.error.before), noise(judged.error.after));
     let line = |text: &str| text.replace(['\n', '\r'], " ");
     format!(
         "# Scenario \"{}\" with what softdock diagnose found in the recording \"{}\".\n\
-         # Verdict: {}. Error on {whose}: {} before, {} after, in units of the sensors' noise (1.0 is perfect).\n\
+         # Verdict: {}. Error on {whose}{horizon}: {before} before, {after} after, in units of the sensors' noise (1.0 is perfect).\n\
          # From {}; the entries that were added stand at the end, each value with its standard error. Paths start from here.\n",
         line(&scenario.name),
         line(&diagnosis.recording),
         diagnosis.verdict.word(),
-        noise(judged.before),
-        noise(judged.after),
         line(scenario.source.file()),
     )
 }

@@ -1,6 +1,6 @@
 //! The verdict in one paragraph of plain words, from the data.
 
-use crate::diagnosis::{Diagnosis, Explained, Found, Located, ParamValue, Rival, StdErr, Verdict};
+use crate::diagnosis::{Diagnosis, Explained, Found, Judged, Located, ParamValue, Rival, StdErr, Verdict};
 use crate::evidence::Evidence;
 use crate::number::{noise, percent, with_error};
 use crate::vocabulary::{plain_name, unit};
@@ -34,26 +34,31 @@ pub fn paragraph(diagnosis: &Diagnosis, evidence: &Evidence) -> String {
 
 fn opening(diagnosis: &Diagnosis) -> String {
     let (scenario, recording) = (&diagnosis.scenario, &diagnosis.recording);
-    let (before, whose) = judged_before(diagnosis);
+    let judged = diagnosis.judged();
+    let (before, whose) = (noise(judged.error.before), whose_words(&judged));
     match diagnosis.verdict {
         Verdict::NoMismatch => format!(
             "The scenario “{scenario}” predicts the recording “{recording}” as well as the noise of its sensors allows: \
-             its error {whose} is {} times the noise (1 is perfect), and no effect of the library improves it significantly.",
-            noise(before)
+             its error {whose} is {before} times the noise (1 is perfect), and no effect of the library improves it significantly."
         ),
         _ => format!(
             "The recording “{recording}” differs from the scenario “{scenario}” by more than the noise of its sensors: \
-             {whose} the scenario is wrong by {} times the noise (1 is perfect).",
-            noise(before)
+             {whose} the scenario is wrong by {before} times the noise (1 is perfect)."
         ),
     }
 }
 
-/// The nominal error that says most, and on which runs.
-fn judged_before(diagnosis: &Diagnosis) -> (f64, &'static str) {
-    match diagnosis.error.holdout {
-        Some(holdout) => (holdout.before, "on runs that were not used for the search"),
-        None => (diagnosis.error.fit.before, "on the runs that were used (there are no others)"),
+/// On which runs, and over which horizon.
+fn whose_words(judged: &Judged) -> String {
+    let whose = match judged.left_out {
+        true => "on runs that were not used for the search",
+        false => "on the runs that were used (there are no others)",
+    };
+    match judged.window_s {
+        None => whose.to_owned(),
+        Some(window) => {
+            format!("{whose}, over {} s at a time (whole runs are not predictable)", crate::number::short(window))
+        }
     }
 }
 
@@ -121,7 +126,7 @@ fn explanation(diagnosis: &Diagnosis) -> Option<String> {
 pub fn share_words(explained: &Explained) -> String {
     // As many digits as tell it from all of it.
     let decimals = |share: f64| (-(1.0 - share).abs().max(1e-6).log10()).ceil().max(2.0) as usize - 2;
-    let percent = |share: f64| format!("{:.*}", decimals(share), 100.0 * share);
+    let percent = |share: f64| format!("{:.*}", decimals(share.min(1.0)), 100.0 * share.min(1.0));
     let [low, high] = explained.interval;
     format!("{} % (95 % interval {} to {} %)", percent(explained.share), percent(low), percent(high))
 }
@@ -173,22 +178,23 @@ fn improvement(diagnosis: &Diagnosis) -> Option<String> {
     if diagnosis.effects.is_empty() {
         return None;
     }
-    let error = &diagnosis.error;
-    let (judged, whose) = match error.holdout {
-        Some(holdout) => (holdout, "on the runs that were not used"),
-        None => (error.fit, "on the runs that were used"),
-    };
+    let judged = diagnosis.judged();
     let what = if diagnosis.effects.len() == 1 { "it" } else { "them" };
-    let windows = format!(
-        "restarted every {} s: from {} to {}",
-        crate::number::short(error.window_s),
-        noise(error.windowed.before),
-        noise(error.windowed.after)
-    );
+    let error = &diagnosis.error;
+    let windows = match judged.window_s {
+        Some(_) => String::new(),
+        None => format!(
+            " (restarted every {} s: from {} to {})",
+            crate::number::short(error.window_s),
+            noise(error.windowed.before),
+            noise(error.windowed.after)
+        ),
+    };
     Some(format!(
-        "With {what} in the model, the error {whose} falls from {} to {} times the noise ({windows}).",
-        noise(judged.before),
-        noise(judged.after)
+        "With {what} in the model, the error {} falls from {} to {} times the noise{windows}.",
+        whose_words(&judged),
+        noise(judged.error.before),
+        noise(judged.error.after)
     ))
 }
 

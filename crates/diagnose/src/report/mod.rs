@@ -108,21 +108,26 @@ fn tiles(diagnosis: &Diagnosis, evidence: &Evidence) -> Vec<(&'static str, Strin
             format!("noise alone passes {} with {}", crate::number::short(test.bound), percent(test.false_alarm));
         tiles.push(("test for a mismatch", crate::number::short(test.value), bound));
     }
-    let error = &diagnosis.error;
-    let (label, judged) = match error.holdout {
-        Some(holdout) => ("error on runs not used", holdout),
-        None => ("error on the runs used", error.fit),
-    };
+    if let Some(explained) = &diagnosis.explained_share {
+        let [low, high] = explained.interval.map(|x| percent(x.min(1.0)));
+        let below = format!(
+            "of the mismatch, 95 % interval {low} to {high}, on runs {}used",
+            if explained.left_out { "not " } else { "" }
+        );
+        tiles.push(("explained", percent(explained.share.min(1.0)), below));
+    }
+    let (error, judged) = (&diagnosis.error, diagnosis.judged());
+    let label = if judged.left_out { "error on runs not used" } else { "error on the runs used" };
     let arrow = |e: crate::diagnosis::BeforeAfter| match diagnosis.effects.is_empty() {
         true => noise(e.before),
         false => format!("{} → {}", noise(e.before), noise(e.after)),
     };
-    let windows = format!(
-        "× noise, free run; {} in windows of {} s",
-        arrow(error.windowed),
-        crate::number::short(error.window_s)
-    );
-    tiles.push((label, arrow(judged), windows));
+    let window = crate::number::short(error.window_s);
+    let below = match judged.window_s {
+        Some(_) => format!("× noise, in windows of {window} s: whole runs are not predictable"),
+        None => format!("× noise, free run; {} in windows of {window} s", arrow(error.windowed)),
+    };
+    tiles.push((label, arrow(judged.error), below));
     tiles
 }
 

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Recordings of two robots by MuJoCo, each with something concealed, beside scenarios that know nothing of it.
+
+    record.py OUT        needs mujoco 4.0 and numpy from PyPI
+
+OUT/<robot>/scenario.toml, OUT/<robot>/<case>/{recording.toml,run-1.csv …}, OUT/keys.json: what is in which case, for check.py alone.
+RK4 at 0.1 ms; torques of a PD loop along sums of sines, held at 500 Hz and recorded; joints at 250 Hz, bases at 50 Hz; white noise and rounding.
+"""
+
+import json
+import pathlib
+import sys
+
+import mujoco
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+RUNS, SECONDS, STEP, TICK = 5, 6.0, 1e-4, 2e-3
+NOISE = {"position": 5e-5, "velocity": 2e-3, "base": 2e-4, "turn": 2e-4, "gyro": 5e-4}
+
+ROBOTS = {
+    "arm": dict(base="fixed", gravity=-9.81, joints=["pan", "lift", "elbow", "wrist"], gain=[60, 90, 50, 12], tool="hand"),
+    "floater": dict(base="free", gravity=0.0, joints=["root", "bend", "roll"], gain=[25, 15, 4], tool="tool"),
+}
+CASES = {
+    "nothing": [],
+    "dry": [("joint-coulomb-friction", 1, 0.5)],
+    "viscous": [("joint-viscous-friction", 2, 0.4)],
+    "payload": [("payload", None, 0.35)],
+    "spring": [("joint-spring", 1, 2.5)],
+    "late": [("actuator-delay", 0, 0.006)],
+    "dry-payload": [("joint-coulomb-friction", 1, 0.5), ("payload", None, 0.35)],
+}
+
+
+def model_of(name, robot, effects):
+    spec = mujoco.MjSpec.from_file(str(HERE / f"{name}.urdf"))
+    spec.option.timestep = STEP
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    spec.option.gravity = [0, 0, robot["gravity"]]
+    spec.compiler.fusestatic = False
+    if robot["base"] == "free":
+        spec.worldbody.first_body().add_freejoint()
+    for joint in spec.joints:
+        joint.limited = mujoco.mjtLimited.mjLIMITED_FALSE
+        joint.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE
+    for effect, where, size in effects:
+        if effect == "payload":
+            tool = spec.body(robot["tool"])
+            tool.add_body(name="load", pos=[0.02, 0.0, 0.09], mass=size, inertia=[1e-9] * 3, ipos=[0, 0, 0], explicitinertial=True)
+            continue
+        joint = spec.joint(robot["joints"][where])
+        if effect == "joint-coulomb-friction":
+            joint.frictionloss = size
+        elif effect == "joint-viscous-friction":
+            joint.damping = [size, 0, 0] if np.ndim(joint.damping) else size
+        elif effect == "joint-spring":
+            joint.stiffness = [size, 0, 0] if np.ndim(joint.stiffness) else size
+    return spec.compile()
+
+
+def reference(dice, count):
+    """Sums of three sines a joint: position and rate by time."""
+    amplitude = dice.uniform(0.15, 0.45, (count, 3))
+    rate = 2 * np.pi * dice.uniform(0.15, 0.9, (count, 3))
+    phase = dice.uniform(0, 2 * np.pi, (count, 3))
+    middle = dice.uniform(-0.6, 0.6, count)
+    at = lambda t: middle + (amplitude * np.sin(rate * t + phase)).sum(1)
+    slope = lambda t: (amplitude * rate * np.cos(rate * t + phase)).sum(1)
+    return at, slope
+
+
+def record(model, robot, delay, dice):
+    data = mujoco.MjData(model)
+    count = len(robot["joints"])
+    is_free = robot["base"] == "free"
+    q0, v0 = (7, 6) if is_free else (0, 0)
+    at, slope = reference(dice, count)
+    data.qpos[q0:] = at(0.0) + dice.normal(0, 0.05, count)
+    if is_free:
+        data.qvel[:6] = np.r_[dice.normal(0, 0.01, 3), dice.normal(0, 0.03, 3)]
+    mujoco.mj_forward(model, data)
+    gain = np.array(robot["gain"], float)
+    commands, joints, bases = [], [], []
+    per_tick, late = round(TICK / STEP), round(delay[1] / STEP)
+    held = []
+    for k in range(round(SECONDS / STEP) + 1):
+        t = k * STEP
+        if k % per_tick == 0:
+            q, v = data.qpos[q0:], data.qvel[v0:]
+            command = gain * (at(t) - q) + 0.15 * gain * (slope(t) - v) + data.qfrc_bias[v0:]
+            command = np.round(command, 4)
+            commands.append((t, command))
+            held.append((k, command))
+        if k % round(4e-3 / STEP) == 0:
+            joints.append((t, data.qpos[q0:].copy(), data.qvel[v0:].copy()))
+        if is_free and k % round(20e-3 / STEP) == 0:
+            bases.append((t, data.qpos[:3].copy(), data.qpos[3:7].copy(), data.qvel[3:6].copy()))
+        now = held[-1][1].copy()
+        if delay[0] is not None:
+            past = [c for (since, c) in held[-12:] if since <= k - late]
+            now[delay[0]] = past[-1][delay[0]] if past else 0.0
+        data.qfrc_applied[v0:] = now
+        mujoco.mj_step(model, data)
+    return commands, joints, bases
+
+
+def write_run(path, robot, recorded, dice):
+    commands, joints, bases = recorded
+    rows = {}
+    names = robot["joints"]
+    header = [f"joint.{j}.effort_command" for j in names] + [f"joint.{j}.position" for j in names] + [f"joint.{j}.velocity" for j in names]
+    base = [f"body.hull.position.{a}" for a in "xyz"] + [f"body.hull.orientation.{a}" for a in "wxyz"] + [f"body.hull.angular_velocity.{a}" for a in "xyz"]
+    header += base if bases else []
+    put = lambda t, channel, value, digits: rows.setdefault(round(t, 6), {}).__setitem__(channel, f"{value:.{digits}f}")
+    for t, command in commands:
+        for j, c in zip(names, command):
+            put(t, f"joint.{j}.effort_command", c, 4)
+    for t, q, v in joints:
+        for j, x, w in zip(names, q + dice.normal(0, NOISE["position"], len(q)), v + dice.normal(0, NOISE["velocity"], len(v))):
+            put(t, f"joint.{j}.position", x, 6)
+            put(t, f"joint.{j}.velocity", w, 5)
+    for t, p, q, w in bases:
+        turn = dice.normal(0, NOISE["turn"], 3)
+        noisy = np.zeros(4)
+        mujoco.mju_mulQuat(noisy, q, np.r_[1.0, 0.5 * turn])
+        noisy /= np.linalg.norm(noisy)
+        for a, x in zip("xyz", p + dice.normal(0, NOISE["base"], 3)):
+            put(t, f"body.hull.position.{a}", x, 6)
+        for a, x in zip("wxyz", noisy):
+            put(t, f"body.hull.orientation.{a}", x, 7)
+        for a, x in zip("xyz", w + dice.normal(0, NOISE["gyro"], 3)):
+            put(t, f"body.hull.angular_velocity.{a}", x, 6)
+    lines = ["t," + ",".join(header)]
+    lines += [f"{t:.4f}," + ",".join(row.get(c, "") for c in header) for t, row in sorted(rows.items())]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def manifest(robot, case):
+    text = f'format = 1\nrig = "{robot}"\ntitle = "{robot} by MuJoCo"\n\n[noise]\n'
+    for j in ROBOTS[robot]["joints"]:
+        text += f'"joint.{j}.position" = {NOISE["position"]}\n"joint.{j}.velocity" = {NOISE["velocity"]}\n'
+    if ROBOTS[robot]["base"] == "free":
+        for channel, key in (("position", "base"), ("orientation", "turn"), ("angular_velocity", "gyro")):
+            text += f'"body.hull.{channel}" = {NOISE[key]}\n'
+    for i in range(RUNS):
+        text += f'\n[[run]]\nfile = "run-{i + 1}.csv"\nrole = "{"fit" if i < 3 else "holdout"}"\nnote = "sines {i + 1}"\n'
+    return text
+
+
+def scenario(name, robot):
+    text = f'name = "{name}"\nseed = 1\nduration_s = 1.0\n\n[integrator]\nkind = "rk4"\nstep_s = 5e-4\n\n'
+    kind = "lab" if robot["gravity"] else "deep-space"
+    text += f'[environment]\nkind = "{kind}"\n' + (f"gravity_m_per_s2 = [0.0, 0.0, {robot['gravity']}]\n" if robot["gravity"] else "")
+    text += f'\n[[vehicle]]\nname = "{name}"\nurdf = "{name}.urdf"\nbase = "{robot["base"]}"\n'
+    for j in robot["joints"]:
+        text += f'\n[[actuator]]\nname = "{j}"\nkind = "joint-torque"\njoint = "{name}/{j}"\n'
+    return text
+
+
+def main():
+    out = pathlib.Path(sys.argv[1])
+    keys = {}
+    for number, (name, robot) in enumerate(ROBOTS.items()):
+        folder = out / name
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "scenario.toml").write_text(scenario(name, robot))
+        (folder / f"{name}.urdf").write_text((HERE / f"{name}.urdf").read_text())
+        for case, effects in CASES.items():
+            late = [(where, size) for effect, where, size in effects if effect == "actuator-delay"]
+            model = model_of(name, robot, effects)
+            (folder / case).mkdir(exist_ok=True)
+            (folder / case / "recording.toml").write_text(manifest(name, case))
+            for run in range(RUNS):
+                dice = np.random.default_rng([number, run])
+                recorded = record(model, robot, late[0] if late else (None, 0.0), dice)
+                write_run(folder / case / f"run-{run + 1}.csv", robot, recorded, np.random.default_rng([number, run, list(CASES).index(case)]))
+            place = lambda effect, where: f"body:{robot['tool']}" if effect == "payload" else f"joint:{robot['joints'][where]}"
+            keys[f"{name}/{case}"] = [[effect, place(effect, where), size] for effect, where, size in effects]
+            print(f"{name}/{case}", flush=True)
+    (out / "keys.json").write_text(json.dumps(keys, indent=1) + "\n")
+
+
+main()
