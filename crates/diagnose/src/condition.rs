@@ -5,12 +5,13 @@
 //! explains most of its variance is named where that is most of it.
 
 use crate::fit::Fit;
-use crate::linear::Stage;
+use crate::linear::{Segment, Stage};
 use crate::locate::{Located, WindowForce};
 use crate::reading::{Reading, Value};
 use crate::replay::Span;
 use crate::stretches::is_missed;
 use crate::tape::Tape;
+use rayon::prelude::*;
 use scenario::measure::Quantity;
 use spatial::Vec3;
 
@@ -21,17 +22,25 @@ const WINDOWS: usize = 8;
 /// Parts of a window in which samples are averaged before a way is measured: noise shall not count as way.
 const PARTS: usize = 8;
 
-/// First and last instant that the nominal model misses in any run, s; the whole span where no window stands out.
-pub(crate) fn when(stage: &Stage<'_>, nominal: &Fit) -> (f64, f64) {
+/// First and last instant that a model misses in any run, s; the whole span where no window stands out, or those that do hold less than
+/// most of what is amiss: a mismatch that is slow hides in every window.
+pub(crate) fn when(stage: &Stage<'_>, fit: &Fit) -> (f64, f64) {
     let end = stage.tapes.iter().map(|t| t.span.1).fold(0.0, f64::max);
-    let missed = nominal.segments.iter().filter(|s| {
-        let r = stage.residuals(&nominal.built, s);
-        is_missed(r.norm_squared(), r.len())
-    });
-    let (from, to) =
-        missed.fold((f64::INFINITY, 0.0), |(from, to): (f64, f64), s| (from.min(s.span.from), to.max(s.span.to)));
-    if from < to { (from, to) } else { (0.0, end) }
+    let excess_of = |s: &Segment| {
+        let r = stage.residuals(&fit.built, s);
+        (r.norm_squared() - r.len() as f64, is_missed(r.norm_squared(), r.len()))
+    };
+    let all: Vec<(f64, bool)> = fit.segments.par_iter().map(excess_of).collect();
+    let whole: f64 = all.iter().map(|w| w.0).sum();
+    let missed = || fit.segments.iter().zip(&all).filter(|(_, w)| w.1);
+    let held: f64 = missed().map(|(_, w)| w.0).sum();
+    let (from, to) = missed()
+        .fold((f64::INFINITY, 0.0), |(from, to): (f64, f64), (s, _)| (from.min(s.span.from), to.max(s.span.to)));
+    if from < to && held > MOST * whole { (from, to) } else { (0.0, end) }
 }
+
+/// Share of what is amiss that makes most of it.
+const MOST: f64 = 0.8;
 
 /// What a place's missing force depends on, in words with the share of its variance; none where nothing stands out.
 pub(crate) fn dependence(features: &Features, nominal: &Fit, located: &Located, place: &str) -> Option<String> {

@@ -295,8 +295,8 @@ pub struct Judged {
     pub window_s: Option<f64>,
 }
 
-/// Growth of an error from windows to whole runs beyond which these are not predictable: deviations grow, whatever the model. Half and twice
-/// move no set of the practice recordings but those that are chaotic.
+/// Growth of an error from windows to whole runs beyond which these are not predictable: deviations grow, whatever the model.
+/// It moves what the headline tells, no verdict.
 const PREDICTABLE: f64 = 5.0;
 
 impl Diagnosis {

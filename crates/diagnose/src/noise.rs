@@ -22,7 +22,7 @@ use record::{RecordedRun, RecordingSet, Role, Series};
 use std::collections::BTreeMap;
 
 /// Relative difference from a stated σ that the samples must show to be believed against it: an estimate is sure to some per cent.
-/// Half: σ that are right are replaced by estimates at every second channel; twice: σ wrong by 5 % stay.
+/// At half of it estimates would replace σ that are right, at twice σ that are wrong by 5 % would stay.
 const SURE: f64 = 0.03;
 /// Factor by which samples may differ from a stated σ. Twice the prior's ±20 % at five standard deviations.
 const FARTHEST: f64 = 2.0;

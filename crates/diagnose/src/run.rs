@@ -305,7 +305,7 @@ fn window_of(set: &RecordingSet, tapes: &[Tape], parts: f64) -> f64 {
     set.window_s.unwrap_or(longest / parts)
 }
 
-/// Windows of the longest run, at first and where that leads to little. They decide more than they should: at 10 instead of 12 the search takes
+/// Windows of the longest run, at first and where that leads to little. Chosen with the practice recordings at hand. They decide more than they should: at 10 instead of 12 the search takes
 /// another law first on one practice recording with limit cycles, and two slow and fast effects at once were found in the longer ones alone.
 const WINDOWS: [f64; 2] = [12.0, 7.5];
 

@@ -16,11 +16,11 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use record::Role;
 use std::collections::BTreeMap;
 
-/// Resampled sets of windows. Half and twice: the ends of the interval move by less than a tenth of its width.
+/// Resampled sets of windows: the ends of the interval are sure to some hundredths of its width.
 const DRAWS: usize = 1000;
 /// Chance that the share lies below, and above, the interval.
 const TAIL: f64 = 0.025;
-/// Growth of a run's mean square above noise that is harm. 1 would call a hair's breadth harm, 2 leaves a run twice as wrong.
+/// Growth of a run's mean square above noise that is harm. At 1 a hair's breadth would be harm, at 2 a run may become twice as wrong.
 const HARM: f64 = 1.2;
 /// The same in standard deviations of what noise alone leaves.
 const SIGMAS: f64 = 4.0;

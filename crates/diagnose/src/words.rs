@@ -122,13 +122,17 @@ fn explanation(diagnosis: &Diagnosis) -> Option<String> {
     }
 }
 
+/// "99.6": a share in per cent, with as many digits as tell it from all.
+pub fn share_percent(share: f64) -> String {
+    let share = share.min(1.0);
+    let decimals = (-(1.0 - share).max(1e-6).log10()).ceil().max(2.0) as usize - 2;
+    format!("{:.*}", if share < 1.0 { decimals } else { 0 }, 100.0 * share)
+}
+
 /// "99.6 % (95 % interval 99.4 to 99.7 %)".
 pub fn share_words(explained: &Explained) -> String {
-    // As many digits as tell it from all of it.
-    let decimals = |share: f64| (-(1.0 - share).abs().max(1e-6).log10()).ceil().max(2.0) as usize - 2;
-    let percent = |share: f64| format!("{:.*}", decimals(share.min(1.0)), 100.0 * share.min(1.0));
-    let [low, high] = explained.interval;
-    format!("{} % (95 % interval {} to {} %)", percent(explained.share), percent(low), percent(high))
+    let [share, low, high] = [explained.share, explained.interval[0], explained.interval[1]].map(share_percent);
+    format!("{share} % (95 % interval {low} to {high} %)")
 }
 
 /// What is left, where, when, and on what it depends.
@@ -191,8 +195,7 @@ fn improvement(diagnosis: &Diagnosis) -> Option<String> {
         ),
     };
     Some(format!(
-        "With {what} in the model, the error {} falls from {} to {} times the noise{windows}.",
-        whose_words(&judged),
+        "With {what} in the model, the error there falls from {} to {} times the noise{windows}.",
         noise(judged.error.before),
         noise(judged.error.after)
     ))
@@ -234,6 +237,14 @@ fn join(parts: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_share_has_the_digits_that_tell_it_from_all() {
+        assert_eq!(
+            [0.5, 0.96, 0.9964, 0.99991, 1.0, 1.002].map(share_percent),
+            ["50", "96", "99.6", "99.991", "100", "100"]
+        );
+    }
 
     #[test]
     fn places_and_times_are_words() {

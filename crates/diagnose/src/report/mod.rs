@@ -13,7 +13,7 @@ mod trust;
 use crate::diagnosis::{Diagnosis, Verdict};
 use crate::evidence::Evidence;
 use crate::number::{noise, percent};
-use crate::words::{headline, paragraph, parameter_words, place_words, when_words};
+use crate::words::{headline, paragraph, parameter_words, place_words, share_percent, when_words};
 use record::page::{SCRIPT, STYLE};
 use record::plot::escape;
 use std::fmt::Write;
@@ -109,12 +109,10 @@ fn tiles(diagnosis: &Diagnosis, evidence: &Evidence) -> Vec<(&'static str, Strin
         tiles.push(("test for a mismatch", crate::number::short(test.value), bound));
     }
     if let Some(explained) = &diagnosis.explained_share {
-        let [low, high] = explained.interval.map(|x| percent(x.min(1.0)));
-        let below = format!(
-            "of the mismatch, 95 % interval {low} to {high}, on runs {}used",
-            if explained.left_out { "not " } else { "" }
-        );
-        tiles.push(("explained", percent(explained.share.min(1.0)), below));
+        let [low, high] = explained.interval.map(share_percent);
+        let whose = if explained.left_out { "not used" } else { "used" };
+        let below = format!("of the mismatch on runs {whose}, 95 % interval {low} to {high} %");
+        tiles.push(("explained", format!("{} %", share_percent(explained.share)), below));
     }
     let (error, judged) = (&diagnosis.error, diagnosis.judged());
     let label = if judged.left_out { "error on runs not used" } else { "error on the runs used" };
