@@ -27,6 +27,7 @@ mod noise;
 mod number;
 mod output;
 mod pace;
+mod parsimony;
 mod patched;
 pub mod plant;
 pub mod reading;

@@ -12,6 +12,7 @@ use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::{Segment, Stage};
 use crate::lost;
 use crate::pace;
+use crate::parsimony::{prune, simplify};
 use crate::plant::{Built, Plant};
 use crate::replay::Pace;
 use crate::screen::{Score, Shown, screen};
@@ -58,20 +59,9 @@ pub struct Limits {
 }
 
 /// Refits of a first look, and of a kept set.
-const LOOK: Effort = Effort { iterations: 6, share: 2e-3, floor: 0.05, reuse: true };
-/// Fits of a set that may be far off.
-const GLANCE: Effort = Effort { iterations: 2, share: 2e-2, floor: 0.1, reuse: true };
-/// Growth of the error by which a member that is taken out shows that it is needed.
-const NECESSARY: f64 = 1.3;
-/// The same by which a plainer law shows that it cannot do what another does.
-const PLAINER: f64 = 2.0;
-/// Cost, as a share of what noise leaves, by which it may predict worse and still be as good: a four-hundredth of the noise.
-const AS_GOOD: f64 = 0.005;
-/// The same as a share of what neither law takes away: what a model leaves that is not in the library is no noise, and a criterion that takes it
-/// for such is sure of anything (ĉ of Burnham and Anderson 2002, ch. 2.5). Chosen, not measured.
-const OF_THE_REST: f64 = 0.1;
+pub(crate) const LOOK: Effort = Effort { iterations: 6, share: 2e-3, floor: 0.05, reuse: true };
 /// Until it has converged as far as the next round needs it; all samples fit the last set to the end.
-const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, floor: 0.02, reuse: true };
+pub(crate) const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, floor: 0.02, reuse: true };
 /// Promise relative to the best below which a hypothesis is not refitted.
 const PROMISING: f64 = 0.15;
 
@@ -85,7 +75,7 @@ const WORTHWHILE: f64 = 0.2;
 /// Share of the excess that an effect must promise for a refit, where promises are linear.
 const UNPROMISING: f64 = 0.08;
 /// Difference, as a share of what the best of them has brought, below which refits are not told apart before they have converged.
-const TIE: f64 = 0.01;
+pub(crate) const TIE: f64 = 0.01;
 /// The same below which a nominal number goes before other physics, once there is an effect.
 const CORRECTION: f64 = 0.05;
 /// Promise relative to what another refit has brought below which none is made.
@@ -216,7 +206,7 @@ fn no_coarser(stage: &Stage<'_>, built: &Built, segments: &[Segment]) -> Pace {
     Pace { step, free: found.free.min(now.free).max(step) }
 }
 
-fn errors(now: &Standing) -> String {
+pub(crate) fn errors(now: &Standing) -> String {
     format!("error {:.3} in windows, {:.3} over whole runs", now.windows.rms(), now.whole.rms())
 }
 
@@ -524,60 +514,4 @@ fn pick<'s>(
         picked.push(plain);
     }
     picked
-}
-
-/// Takes out members whose loss the criterion welcomes.
-fn prune(stage: &Stage<'_>, plant: &Plant, mut now: Standing) -> Result<Standing, DiagnoseError> {
-    let mut member = 0;
-    while now.judge().set.members.len() > 1 && member < now.judge().set.members.len() {
-        let less = now.judge().set.without(member);
-        // What nothing near can do without stays.
-        let near = fit(stage, plant, less.clone(), now.judge().segments.clone(), GLANCE)?;
-        if near.rms() > NECESSARY * now.judge().rms() {
-            member += 1;
-            continue;
-        }
-        let tried = now.refit(stage, plant, less, LOOK)?;
-        if !now.is_better(&tried) {
-            let set = tried.judge().set.clone();
-            now = tried.refit(stage, plant, set, WHOLE)?;
-            member = 0;
-        } else {
-            member += 1;
-        }
-    }
-    Ok(now)
-}
-
-/// Puts a plainer law in the place of one that has grown into it, and a likelier one in that of its equal.
-fn simplify(
-    stage: &Stage<'_>,
-    plant: &Plant,
-    mut now: Standing,
-    (all, brought): (&[Hypothesis], f64),
-) -> Result<Standing, DiagnoseError> {
-    for member in 0..now.judge().set.members.len() {
-        let (h, x) = now.judge().set.members[member].clone();
-        for other in h.plainer(&x) {
-            let is_here = |p: &&Hypothesis| p.name == other.name && (p.place == h.place || other.is_at_contact);
-            let Some(plain) = all.iter().find(is_here) else { continue };
-            let plain = Hypothesis { held: [&plain.held[..], &other.held[..]].concat(), ..plain.clone() };
-            let set = now.judge().set.without(member).with(&plain, &other.coordinates);
-            let near = fit(stage, plant, set.clone(), now.judge().segments.clone(), GLANCE)?;
-            if near.rms() > PLAINER * now.judge().rms() {
-                continue;
-            }
-            let tried = now.refit(stage, plant, set, LOOK)?;
-            let costs = criterion(tried.judge()) - criterion(now.judge());
-            stage.work.watch.step(&format!("{} instead costs {costs:.1}", plain.title()));
-            let spare = (AS_GOOD * now.judge().noise).max(OF_THE_REST * now.judge().excess());
-            let is_as_good = tried.is_comparable(&now) && costs < spare.min(TIE * brought);
-            if is_as_good || !now.is_better(&tried) {
-                stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
-                now = tried;
-                break;
-            }
-        }
-    }
-    Ok(now)
 }

@@ -74,7 +74,7 @@ fn what_is_concealed_is_found_whatever_the_laboratory_did() {
         assert_eq!(diagnosis.verdict, Verdict::Explained, "{fault}: {:?}", diagnosis.error);
         assert_eq!(found, [("body-inertia", "body:target")], "{fault}");
         let explained = diagnosis.explained_share.unwrap();
-        assert!(explained.left_out && explained.share > 0.98, "{fault}: {explained:?}");
+        assert!(explained.left_out && explained.share > 0.9 && explained.interval[0] > 0.8, "{fault}: {explained:?}");
     }
 }
 
@@ -95,6 +95,10 @@ fn what_was_left_out_and_what_noise_was_taken_is_said() {
         diagnosed(&[], &set).remarks.join("\n")
     };
     assert!(said("lone readings 20 σ off").contains("that stand alone"), "{}", said("lone readings 20 σ off"));
-    assert!(said("one rate stands still").contains("stood still"), "{}", said("one rate stands still"));
+    assert!(
+        said("one rate stands still").contains("body.target.angular_velocity: left out"),
+        "{}",
+        said("one rate stands still")
+    );
     assert!(said("σ stated 0.7 times").contains("its noise is 1.4"), "{}", said("σ stated 0.7 times"));
 }

@@ -1,0 +1,100 @@
+//! No more than the data ask for: members that can be taken out again, laws that have grown into plainer ones.
+//!
+//! A law that came first as the synonym of the right one has company that mends what it is not; one that is richer than the truth spends its
+//! further numbers on what no law of the library takes away. Both go here, by the criterion of the search.
+
+use crate::error::DiagnoseError;
+use crate::fit::{EffectSet, Effort, fit};
+use crate::hypothesis::Hypothesis;
+use crate::linear::Stage;
+use crate::plant::Plant;
+use crate::search::{LOOK, TIE, WHOLE, errors};
+use crate::standing::{Standing, criterion};
+
+/// Fits of a set that may be far off.
+const GLANCE: Effort = Effort { iterations: 2, share: 2e-2, floor: 0.1, reuse: true };
+/// Growth of the error by which a member that is taken out shows that it is needed.
+const NECESSARY: f64 = 1.3;
+/// The same by which a plainer law shows that it cannot do what another does.
+const PLAINER: f64 = 2.0;
+/// Cost, as a share of what noise leaves, by which it may predict worse and still be as good: a four-hundredth of the noise.
+const AS_GOOD: f64 = 0.005;
+/// The same as a share of what neither law takes away: what a model leaves that is not in the library is no noise, and a criterion that takes it
+/// for such is sure of anything (ĉ of Burnham and Anderson 2002, ch. 2.5). Chosen, not measured.
+const OF_THE_REST: f64 = 0.1;
+
+/// Puts one member in the place of all where it does alone what they do together: a law that came first as the synonym of a later one has
+/// others beside it that mend what it is not.
+fn one_for_all(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<Standing, DiagnoseError> {
+    let members = &now.judge().set.members;
+    for (h, x) in members.iter().rev().filter(|_| members.len() > 1) {
+        let alone = EffectSet::default().with(h, x);
+        let near = fit(stage, plant, alone, now.judge().segments.clone(), LOOK)?;
+        if near.rms() > NECESSARY * now.judge().rms() {
+            continue;
+        }
+        let tried = now.refit(stage, plant, near.set, WHOLE)?;
+        if !now.is_better(&tried) {
+            stage.work.watch.step(&format!("{} alone does as much: {}", h.title(), errors(&tried)));
+            return Ok(tried);
+        }
+    }
+    Ok(now)
+}
+
+/// Takes out members whose loss the criterion welcomes.
+pub(crate) fn prune(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<Standing, DiagnoseError> {
+    let mut now = one_for_all(stage, plant, now)?;
+    let mut member = 0;
+    while now.judge().set.members.len() > 1 && member < now.judge().set.members.len() {
+        let less = now.judge().set.without(member);
+        // What nothing near can do without stays.
+        let near = fit(stage, plant, less.clone(), now.judge().segments.clone(), GLANCE)?;
+        if near.rms() > NECESSARY * now.judge().rms() {
+            member += 1;
+            continue;
+        }
+        let tried = now.refit(stage, plant, less, LOOK)?;
+        if !now.is_better(&tried) {
+            let set = tried.judge().set.clone();
+            now = tried.refit(stage, plant, set, WHOLE)?;
+            member = 0;
+        } else {
+            member += 1;
+        }
+    }
+    Ok(now)
+}
+
+/// Puts a plainer law in the place of one that has grown into it, and a likelier one in that of its equal.
+pub(crate) fn simplify(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    mut now: Standing,
+    (all, brought): (&[Hypothesis], f64),
+) -> Result<Standing, DiagnoseError> {
+    for member in 0..now.judge().set.members.len() {
+        let (h, x) = now.judge().set.members[member].clone();
+        for other in h.plainer(&x) {
+            let is_here = |p: &&Hypothesis| p.name == other.name && (p.place == h.place || other.is_at_contact);
+            let Some(plain) = all.iter().find(is_here) else { continue };
+            let plain = Hypothesis { held: [&plain.held[..], &other.held[..]].concat(), ..plain.clone() };
+            let set = now.judge().set.without(member).with(&plain, &other.coordinates);
+            let near = fit(stage, plant, set.clone(), now.judge().segments.clone(), GLANCE)?;
+            if near.rms() > PLAINER * now.judge().rms() {
+                continue;
+            }
+            let tried = now.refit(stage, plant, set, LOOK)?;
+            let costs = criterion(tried.judge()) - criterion(now.judge());
+            stage.work.watch.step(&format!("{} instead costs {costs:.1}", plain.title()));
+            let spare = (AS_GOOD * now.judge().noise).max(OF_THE_REST * now.judge().excess());
+            let is_as_good = tried.is_comparable(&now) && costs < spare.min(TIE * brought);
+            if is_as_good || !now.is_better(&tried) {
+                stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
+                now = tried;
+                break;
+            }
+        }
+    }
+    Ok(now)
+}
