@@ -156,7 +156,7 @@ fn law(located: &Located, left: &Located, window: usize, (place, column): (usize
 }
 
 fn law_name(findings: &Findings) -> String {
-    findings.found.set.members.iter().map(|(h, _)| h.name).collect::<Vec<_>>().join(" and ")
+    findings.found.set.findings().map(|(h, _)| h.name).collect::<Vec<_>>().join(" and ")
 }
 
 /// The missing forces against the quantities that explain most of them.

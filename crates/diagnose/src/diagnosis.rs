@@ -34,6 +34,9 @@ pub struct Diagnosis {
     pub located: Vec<Located>,
     /// What explains it, in the order in which it was found; empty where nothing does.
     pub effects: Vec<Found>,
+    /// Nominal numbers that were corrected within the tolerances that the scenario gives them; no findings.
+    #[serde(default)]
+    pub within_tolerance: Vec<Found>,
     /// How well the nominal and the corrected model predict.
     pub error: Errors,
     /// Share of the mismatch that the effects explain on runs left out of the fit; none where nothing was found that helps.

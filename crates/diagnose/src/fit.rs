@@ -37,12 +37,59 @@ impl EffectSet {
 
     /// Whether its last member corrects a nominal number.
     pub fn ends_with_correction(&self) -> bool {
-        self.members.last().is_some_and(|(h, _)| h.tier == Tier::Nominal)
+        self.members.last().is_some_and(|(h, _)| h.tier == Tier::Nominal && !h.is_tolerated())
     }
 
-    /// The set with one more.
+    /// Members that are findings: not those that only move within their tolerances.
+    pub fn findings(&self) -> impl Iterator<Item = &(Hypothesis, Vec<f64>)> {
+        self.members.iter().filter(|(h, _)| !h.is_tolerated())
+    }
+
+    /// Whether it says anything beyond tolerances.
+    pub fn has_findings(&self) -> bool {
+        self.findings().next().is_some()
+    }
+
+    /// The members within tolerances alone.
+    pub fn tolerated(&self) -> Self {
+        let found = (0..self.members.len()).rev().filter(|m| !self.members[*m].0.is_tolerated());
+        found.fold(self.clone(), |set, m| set.without(m))
+    }
+
+    /// Mean and inverse variance of a fitted coordinate's prior, where it has one.
+    fn prior(&self, (m, k): (usize, usize)) -> Option<(f64, f64)> {
+        let h = &self.members[m].0;
+        let sigma = h.tolerance.get(k).filter(|s| **s > 0.0)?;
+        Some((h.coordinates[k].neutral, 1.0 / (sigma * sigma)))
+    }
+
+    /// What the prior adds to the cost: Σ ((x − x₀)/σ)².
+    pub fn prior_cost(&self) -> f64 {
+        let slots = self.members.iter().enumerate().flat_map(|(m, (_, x))| (0..x.len()).map(move |k| (m, k)));
+        slots
+            .filter_map(|s| self.prior(s).map(|(mean, weight)| weight * (self.members[s.0].1[s.1] - mean).powi(2)))
+            .sum()
+    }
+
+    /// Adds the prior's curvature and slope to products over (active numbers, …, residual), the first of which are the fitted numbers.
+    pub(crate) fn add_prior(&self, k: &mut DMatrix<f64>) {
+        let last = k.ncols() - 1;
+        for (i, slot) in self.slots().into_iter().enumerate() {
+            let Some((mean, weight)) = self.prior(slot) else { continue };
+            k[(i, i)] += weight;
+            let slope = weight * (self.members[slot.0].1[slot.1] - mean);
+            k[(i, last)] += slope;
+            k[(last, i)] += slope;
+        }
+    }
+
+    /// The set with one more, which takes the place of the same number within its tolerance.
     pub fn with(&self, hypothesis: &Hypothesis, x: &[f64]) -> Self {
-        let mut set = self.clone();
+        let is_same = |(h, _): &(Hypothesis, Vec<f64>)| h.is_tolerated() && h.title() == hypothesis.title();
+        let mut set = match self.members.iter().position(is_same) {
+            Some(at) => self.without(at),
+            None => self.clone(),
+        };
         set.held.extend(hypothesis.held.iter().map(|k| (set.members.len(), *k)));
         set.members.push((hypothesis.clone(), x.to_vec()));
         set
@@ -282,11 +329,14 @@ fn iterate(
     let variations = vary(plant, &now.set, &slots, sizes)?;
     let linear = stage.linearise(&now.built, &now.segments, &variations, effort.reuse);
     now.iterations += 1;
-    let k = sum_reduced(&linear);
+    let mut k = sum_reduced(&linear);
     let n = slots.len();
+    let shown: Vec<f64> = (0..n).map(|i| k[(i, i)]).collect();
+    now.set.add_prior(&mut k);
     let (a, b, left) = (k.view((0, 0), (n, n)).into_owned(), k.view((0, n), (n, 1)).into_owned(), k[(n, n)]);
     let at: Vec<f64> = slots.iter().map(|(m, c)| now.set.members[*m].1[*c]).collect();
-    let was_blind = rescale(sizes, &a, (now.count, &at));
+    let has_prior: Vec<bool> = slots.iter().map(|s| now.set.prior(*s).is_some()).collect();
+    let was_blind = rescale(sizes, (&shown, &has_prior), (now.count, &at));
     now.freedom = n + linear.iter().map(|s| s.shown).sum::<usize>();
     now.covariance = pseudo_inverse(&a);
     let promised = now.cost - left + (b.transpose() * &now.covariance * &b)[(0, 0)];
@@ -312,15 +362,17 @@ fn iterate(
             return Ok(went(damping, true));
         }
         let linear: Vec<SegmentLinear> = linear.iter().map(|l| l.damped(damping)).collect();
-        let k = sum_reduced(&linear);
+        let mut k = sum_reduced(&linear);
+        now.set.add_prior(&mut k);
         let (a, b) = (k.view((0, 0), (n, n)).into_owned(), k.view((0, n), (n, 1)).into_owned());
         let theta = step(&a, &b, damping);
         let set = now.set.moved(&slots, theta.as_slice());
         let actual: Vec<f64> = slots.iter().map(|(m, c)| set.members[*m].1[*c] - now.set.members[*m].1[*c]).collect();
         if let Ok(built) = plant.build(&set.effects()) {
             let (segments, cost) = stage.follow(&built, &now.segments, &linear, &actual);
-            if cost < now.cost {
-                let gained = now.cost - cost;
+            let prior = set.prior_cost() - now.set.prior_cost();
+            if cost + prior < now.cost {
+                let gained = now.cost - cost - prior;
                 (now.set, now.built, now.segments, now.cost) = (set, built, segments, cost);
                 // A step that had to be shortened says nothing about the end of the way, nor does one along old derivatives.
                 let is_plain = trial == 0 && !was_known;
@@ -365,15 +417,16 @@ pub fn vary(
 
 /// Steps for the next linearisation: a fifth of the noise, as far as the eliminated columns tell; much longer ones where these were too
 /// short to show anything. Whether there were such.
-fn rescale(sizes: &mut [f64], a: &DMatrix<f64>, (count, at): (usize, &[f64])) -> bool {
+/// A number with a prior that nothing shows stays where that has it.
+fn rescale(sizes: &mut [f64], (shown, has_prior): (&[f64], &[bool]), (count, at): (usize, &[f64])) -> bool {
     let mut was_blind = false;
     for (k, size) in sizes.iter_mut().enumerate() {
         let longest = (FARTHEST * at[k].abs()).max(FARTHEST_FROM_ZERO);
-        if a[(k, k)] <= 0.0 && *size < longest {
+        if shown[k] <= 0.0 && *size < longest && !has_prior[k] {
             *size = (BLIND * *size).min(longest);
             was_blind = true;
         }
-        let rms = *size * (a[(k, k)].max(0.0) / count.max(1) as f64).sqrt();
+        let rms = *size * (shown[k].max(0.0) / count.max(1) as f64).sqrt();
         if rms > 0.0 && !(0.01..1.0).contains(&rms) && (rms > 1.0 || *size < longest) {
             *size *= (0.1 / rms).clamp(1e-3, 1e3);
         }

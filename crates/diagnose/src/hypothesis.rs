@@ -111,6 +111,8 @@ pub struct Hypothesis {
     pub held: Vec<usize>,
     /// Whether its screen is dear: many points, or memory whose start is free too.
     pub is_dear: bool,
+    /// Standard deviations of the coordinates where the scenario gives them a tolerance; empty for a finding.
+    pub tolerance: Vec<f64>,
 }
 
 impl Coordinate {
@@ -184,6 +186,19 @@ impl Hypothesis {
                 | "joint-elasticity"
                 | "joint-backlash"
         )
+    }
+
+    /// Whether it is a nominal number that may be off within its tolerance, and no finding.
+    pub fn is_tolerated(&self) -> bool {
+        !self.tolerance.is_empty()
+    }
+
+    /// The same number screened beside where it stands already instead of beside its nominal value.
+    pub fn screened_beside(mut self, x: &[f64]) -> Self {
+        for column in self.screens.iter_mut().flat_map(|s| &mut s.columns) {
+            column.base = x.to_vec();
+        }
+        self
     }
 
     /// Whether it concerns nothing but how a sensor reads what there is to be read at the time.
@@ -329,6 +344,9 @@ impl Hypothesis {
         match self.name {
             "joint-stribeck-friction" => vec![here("joint-coulomb-friction", vec![x[0]])],
             "joint-friction-asymmetry" => vec![here("joint-coulomb-friction", vec![0.5 * (x[0] + x[1])])],
+            "joint-viscous-asymmetry" => vec![here("joint-viscous-friction", vec![0.5 * (x[0] + x[1])])],
+            // Of a thrust that leaves the plane in which all moves its share in the plane is left.
+            "actuator-misalignment" => vec![here("actuator-gain", vec![x[0].hypot(x[1]).cos()])],
             "joint-backlash" => vec![here("joint-elasticity", vec![(-x[1]).exp(), x[2]])],
             "tether-stiffness" => vec![here("linear-drag", vec![x[4]]), at_contact(AT_CONTACT, vec![x[4]])],
             // A level that falls at no speed that occurs is the static one, and one that falls at once the kinetic one.

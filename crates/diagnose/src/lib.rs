@@ -46,6 +46,7 @@ mod summary;
 pub mod synthetic;
 pub mod tape;
 mod tell;
+mod together;
 mod uncertainty;
 mod vocabulary;
 pub mod words;

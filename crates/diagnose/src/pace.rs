@@ -1,7 +1,7 @@
 //! How finely replays advance: the diagnosis' own error against the noise of the sensors.
 //!
 //! The step is halved, from the longest stretch that no sample and no command cuts, until a replay and one of half its step differ by less
-//! than a small part of the noise over every window. Steps of free flight are chosen alike, with those in contact held.
+//! than a small part of the noise, or of what the model misses there, over every window. Steps of free flight are chosen alike, with those in contact held.
 
 use crate::linear::{Segment, Stage};
 use crate::plant::Built;
@@ -19,6 +19,8 @@ const HALVINGS: i32 = 3;
 const FINER: u32 = 2;
 /// Free flight bears steps as many times longer as this.
 const FREE: f64 = 16.0;
+/// Part of what a model misses that counts like noise: steps need not be finer than that tells.
+const OF_THE_MISS: f64 = 0.3;
 /// Windows that are looked at.
 const WINDOWS: usize = 24;
 
@@ -91,8 +93,10 @@ pub fn calc_worst(stage: &Stage<'_>, built: &Built, segments: &[&Segment], pace:
 fn calc_difference(stage: &Stage<'_>, built: &Built, segments: &[&Segment], paces: [Pace; 2]) -> f64 {
     let of = |segment: &&Segment| {
         let [a, b] = paces.map(|pace| Stage { pace, ..*stage }.residuals(built, segment));
-        let difference = (a - b).norm_squared() / stage.count(segment).max(1) as f64;
-        if difference.is_finite() { difference.sqrt() } else { f64::INFINITY }
+        let count = stage.count(segment).max(1) as f64;
+        let missed = (b.norm_squared() / (segment.weight * count)).sqrt();
+        let difference = (a - b).norm_squared() / count;
+        if difference.is_finite() { difference.sqrt() / (OF_THE_MISS * missed).max(1.0) } else { f64::INFINITY }
     };
     segments.par_iter().map(of).reduce(|| 0.0, f64::max)
 }

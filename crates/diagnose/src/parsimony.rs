@@ -4,7 +4,7 @@
 //! further numbers on what no law of the library takes away. Both go here, by the criterion of the search.
 
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Effort, fit};
+use crate::fit::{Effort, fit};
 use crate::hypothesis::Hypothesis;
 use crate::linear::Stage;
 use crate::plant::Plant;
@@ -26,9 +26,10 @@ const OF_THE_REST: f64 = 0.1;
 /// Puts one member in the place of all where it does alone what they do together: a law that came first as the synonym of a later one has
 /// others beside it that mend what it is not.
 fn one_for_all(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<Standing, DiagnoseError> {
-    let members = &now.judge().set.members;
+    let set = &now.judge().set;
+    let members: Vec<_> = set.findings().collect();
     for (h, x) in members.iter().rev().filter(|_| members.len() > 1) {
-        let alone = EffectSet::default().with(h, x);
+        let alone = set.tolerated().with(h, x);
         let near = fit(stage, plant, alone, now.judge().segments.clone(), LOOK)?;
         if near.rms() > NECESSARY * now.judge().rms() {
             continue;
@@ -46,7 +47,11 @@ fn one_for_all(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<Standi
 pub(crate) fn prune(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<Standing, DiagnoseError> {
     let mut now = one_for_all(stage, plant, now)?;
     let mut member = 0;
-    while now.judge().set.members.len() > 1 && member < now.judge().set.members.len() {
+    while now.judge().set.findings().count() > 1 && member < now.judge().set.members.len() {
+        if now.judge().set.members[member].0.is_tolerated() {
+            member += 1;
+            continue;
+        }
         let less = now.judge().set.without(member);
         // What nothing near can do without stays.
         let near = fit(stage, plant, less.clone(), now.judge().segments.clone(), GLANCE)?;
@@ -75,7 +80,8 @@ pub(crate) fn simplify(
 ) -> Result<Standing, DiagnoseError> {
     for member in 0..now.judge().set.members.len() {
         let (h, x) = now.judge().set.members[member].clone();
-        for other in h.plainer(&x) {
+        let plainer = if h.is_tolerated() { Vec::new() } else { h.plainer(&x) };
+        for other in plainer {
             let is_here = |p: &&Hypothesis| p.name == other.name && (p.place == h.place || other.is_at_contact);
             let Some(plain) = all.iter().find(is_here) else { continue };
             let plain = Hypothesis { held: [&plain.held[..], &other.held[..]].concat(), ..plain.clone() };

@@ -29,14 +29,18 @@ pub fn patched_toml(scenario: &Scenario, diagnosis: &Diagnosis, dir: &Path) -> R
     let entries = entries(diagnosis);
     let whole = |text: &str| format!("{header}\n{}\n{entries}", moved(text, &from, dir).trim_end());
     let text = scenario.source.text();
-    if scenario.source.overrides().is_empty() && !text.is_empty() && !has_any(scenario, &diagnosis.effects) {
+    if scenario.source.overrides().is_empty()
+        && !text.is_empty()
+        && !has_any(scenario, &diagnosis.effects)
+        && !has_any(scenario, &diagnosis.within_tolerance)
+    {
         let text = whole(text);
         if parse(&text, &file, &[]).is_ok() {
             return Ok(text);
         }
     }
     let mut bare = scenario.clone();
-    bare.effects.retain(|e| !diagnosis.effects.iter().any(|f| is_same(e, f)));
+    bare.effects.retain(|e| !diagnosis.effects.iter().chain(&diagnosis.within_tolerance).any(|f| is_same(e, f)));
     // Lists that are empty or in line stand before the tables, so entries can be appended once the list is gone.
     let kept: Vec<_> = std::mem::take(&mut bare.effects);
     let kept: String =
@@ -80,7 +84,10 @@ fn entries(diagnosis: &Diagnosis) -> String {
         let params = found.params.iter().map(|(name, value)| (name, value, found.std_err.get(name)));
         entry(&found.name, &found.place, params)
     };
-    diagnosis.effects.iter().map(one).collect::<Vec<_>>().join("")
+    let found: String = diagnosis.effects.iter().map(one).collect();
+    let within: String = diagnosis.within_tolerance.iter().map(one).collect();
+    let title = if within.is_empty() { "" } else { "\n# Nominal numbers, corrected within their tolerances.\n" };
+    format!("{found}{title}{within}")
 }
 
 type Param<'a> = (&'a String, &'a ParamValue, Option<&'a StdErr>);

@@ -5,7 +5,7 @@
 //! 3. missing forces say where, the search says what, first in windows, then over whole runs where these follow;
 //! 4. every run, held-out ones too, is predicted by the nominal and by the corrected model.
 
-use crate::catalogue::hypotheses;
+use crate::catalogue::{self, hypotheses};
 use crate::curves;
 use crate::diagnosis::{Diagnosis, Explained, Verdict};
 use crate::error::DiagnoseError;
@@ -21,7 +21,7 @@ use crate::noise::{self, Noise};
 use crate::pace::{self, Discretisation};
 use crate::plant::Plant;
 use crate::replay::Pace;
-use crate::search::{Attempt, Limits, search};
+use crate::search::{Attempt, Limits, WHOLE, errors, search};
 use crate::share;
 use crate::standing::{Standing, fit_in_turns, follow};
 use crate::stretches::{self, Stretches, cut};
@@ -57,7 +57,7 @@ pub(crate) struct Findings {
 }
 
 /// Limits of the search.
-const LIMITS: Limits = Limits { effects: 3, refits: 6, ends: 2 };
+const LIMITS: Limits = Limits { effects: 6, refits: 6, ends: 2 };
 /// Error (units of noise) and share of the mismatch up to which what a corrected model leaves may be the errors of its own steps and starts.
 const RIGHT: f64 = 1.1;
 const NEXT_TO_NOTHING: f64 = 0.01;
@@ -146,7 +146,7 @@ fn diagnose_in(
         nominal.rms(),
         whole.rms()
     ));
-    let standing = Standing::new(&stage, windows, whole.clone(), rungs);
+    let standing = loosened(&stage, &plant, Standing::new(&stage, windows, whole.clone(), rungs))?;
     let candidates = |stage: &Stage<'_>, now: &Fit| {
         let facts = Facts::new(&now.built, &tapes);
         let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
@@ -204,6 +204,18 @@ fn doubted(stage: &Stage<'_>, plant: &Plant, nominal: Fit) -> Result<Fit, Diagno
     fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)
 }
 
+/// The same with the nominal numbers free within the tolerances that the scenario gives them.
+fn loosened(stage: &Stage<'_>, plant: &Plant, nominal: Standing) -> Result<Standing, DiagnoseError> {
+    let within = catalogue::within(&Facts::new(&nominal.windows.built, stage.tapes), &plant.scenario.tolerance);
+    if within.members.is_empty() || !nominal.judge().is_significant() {
+        return Ok(nominal);
+    }
+    let numbers = within.slots().len();
+    let loose = nominal.refit(stage, plant, within, WHOLE)?;
+    stage.work.watch.step(&format!("{numbers} numbers free within their tolerances: {}", errors(&loose)));
+    Ok(loose)
+}
+
 /// A segment whose derivatives are to be taken anew.
 fn afresh(segment: Segment) -> Segment {
     Segment { columns: None, steps: Steps::default(), weight: 1.0, ..segment }
@@ -224,7 +236,7 @@ fn fit_to_all((thin, all): (&Stage<'_>, &Stage<'_>), plant: &Plant, standing: St
 /// Steps that suit the corrected model over what it is judged by: what was found may be faster than what the nominal model has.
 fn suited(stage: &Stage<'_>, standing: &Standing, chosen: Discretisation) -> Discretisation {
     let judged = standing.judge();
-    if judged.set.members.is_empty() || judged.rms() > NEAR {
+    if !judged.set.has_findings() || judged.rms() > NEAR {
         return Discretisation { pace: stage.pace, ..chosen };
     }
     let found = pace::refine(stage, &judged.built, &judged.segments);
@@ -326,11 +338,11 @@ const DULL: f64 = 0.15;
 /// What was found, from what it leaves and from what it does for runs left out of the fit: an effect that helps there is never dropped.
 fn verdict(judgement: &Judgement, found: &Fit, (follows, helps): (bool, bool)) -> Verdict {
     if !found.is_significant() {
-        return if found.set.members.is_empty() { Verdict::NoMismatch } else { Verdict::Explained };
+        return if !found.set.has_findings() { Verdict::NoMismatch } else { Verdict::Explained };
     }
     let [before, after] = judgement.rms(!follows, |run| found.has_run(run));
     let left = (after * after - 1.0) / (before * before - 1.0).max(1e-9);
-    if found.set.members.is_empty() {
+    if !found.set.has_findings() {
         Verdict::Unknown
     } else if left < NEXT_TO_NOTHING && after < RIGHT {
         Verdict::Explained

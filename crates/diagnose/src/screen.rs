@@ -45,12 +45,12 @@ pub struct Shown {
 }
 
 /// A column of a screen point.
-struct Probe {
-    variation: Variation,
+pub(crate) struct Probe {
+    pub variation: Variation,
     /// Steps of the memory that it brings, where its starts are to be freed.
     memory: Option<Vec<f64>>,
     /// Whether it concerns nothing but how readings are read.
-    is_reading: bool,
+    pub is_reading: bool,
 }
 
 /// Root mean square (units of noise) that a column's step shall have on the pilot segments.
@@ -67,16 +67,21 @@ const SEGMENTS: f64 = 24.0;
 ///
 /// Of very many segments an even selection speaks for all.
 pub fn screen(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -> Result<Vec<Score>, DiagnoseError> {
-    let lengths = fit.segments.iter().map(|s| s.span.to - s.span.from);
-    let (total, longest) = lengths.fold((0.0, 0.0), |(sum, most): (f64, f64), l| (sum + l, most.max(l)));
-    let every = ((total / (SEGMENTS * longest)).ceil() as usize).max(1);
-    let count = fit.segments.len();
-    let thinned =
-        Fit { segments: fit.segments.iter().skip(every / 2).step_by(every).cloned().collect(), ..fit.clone() };
-    let share = thinned.segments.len() as f64 / count.max(1) as f64;
+    let (thinned, share) = thinned(fit);
     let mut scores = screen_all(&stage.coarser(), plant, &thinned, all)?;
     scores.iter_mut().for_each(|s| s.score /= share);
     Ok(scores)
+}
+
+/// A fit of an even selection of its segments that is enough to screen by, and their share of all.
+pub(crate) fn thinned(fit: &Fit) -> (Fit, f64) {
+    let lengths = fit.segments.iter().map(|s| s.span.to - s.span.from);
+    let (total, longest) = lengths.fold((0.0, 0.0), |(sum, most): (f64, f64), l| (sum + l, most.max(l)));
+    let every = ((total / (SEGMENTS * longest)).ceil() as usize).max(1);
+    let thinned =
+        Fit { segments: fit.segments.iter().skip(every / 2).step_by(every).cloned().collect(), ..fit.clone() };
+    let share = thinned.segments.len() as f64 / fit.segments.len().max(1) as f64;
+    (thinned, share)
 }
 
 fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -> Result<Vec<Score>, DiagnoseError> {
@@ -88,7 +93,8 @@ fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     let pilots = Pilots::new(stage, fit);
     let probes_at = |(h, p): &(usize, usize)| probes_of(stage, plant, (fit, &pilots), (&all[*h], &all[*h].screens[*p]));
     let probes: Vec<Vec<Probe>> = points.par_iter().map(probes_at).collect();
-    let products = sum_products(stage, fit, &active, &probes);
+    let mut products = sum_products(stage, fit, &active, &probes);
+    products.iter_mut().for_each(|k| fit.set.add_prior(k));
     let counts = (active.len(), fit.count);
     let places = points.iter().zip(&probes).zip(products);
     let scores = places.filter_map(|((at, probes), k)| score((&all[at.0], *at), probes, k, counts));
@@ -107,7 +113,7 @@ pub(crate) fn active_size(fit: &Fit, m: usize, k: usize) -> f64 {
 }
 
 /// The columns of a screen point with tuned steps; those that cannot be built are left out.
-fn probes_of(
+pub(crate) fn probes_of(
     stage: &Stage<'_>,
     plant: &Plant,
     (fit, pilots): (&Fit, &Pilots<'_>),
@@ -115,9 +121,8 @@ fn probes_of(
 ) -> Vec<Probe> {
     let build = |base: &[f64], direction: &[f64], step: f64| -> Option<Variation> {
         let x: Vec<f64> = base.iter().zip(direction).map(|(b, d)| b + step * d).collect();
-        let mut effects = fit.set.effects();
-        effects.push(hypothesis.effect(&hypothesis.clamped(&x)));
-        plant.build(&effects).ok().map(|built| Variation { built, step })
+        let set = fit.set.with(hypothesis, &hypothesis.clamped(&x));
+        plant.build(&set.effects()).ok().map(|built| Variation { built, step })
     };
     let tuned = |c: &Column| {
         let first = build(&c.base, &c.direction, c.step)?;
@@ -150,14 +155,14 @@ fn probes_of(
 }
 
 /// Segments that tune steps, those in which most is amiss and an even selection, with the residuals of the fit.
-struct Pilots<'a> {
+pub(crate) struct Pilots<'a> {
     all: &'a [Segment],
     residuals: Vec<DVector<f64>>,
     chosen: Vec<usize>,
 }
 
 impl<'a> Pilots<'a> {
-    fn new(stage: &Stage<'_>, fit: &'a Fit) -> Self {
+    pub(crate) fn new(stage: &Stage<'_>, fit: &'a Fit) -> Self {
         let all = &fit.segments;
         let residuals: Vec<DVector<f64>> = all.par_iter().map(|s| stage.residuals(&fit.built, s)).collect();
         let excess = |(s, r): (&Segment, &DVector<f64>)| r.norm_squared() / s.weight - r.len() as f64;

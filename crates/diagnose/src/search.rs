@@ -7,7 +7,7 @@
 //! alone would leave, or nothing promising is left.
 
 use crate::error::DiagnoseError;
-use crate::fit::{Effort, Fit, fit};
+use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::{Segment, Stage};
 use crate::lost;
@@ -19,6 +19,7 @@ use crate::screen::{Score, Shown, screen};
 use crate::standing::{Standing, criterion, told};
 use crate::start::count_memory;
 use crate::stretches::STEEP;
+use crate::together::{Ensemble, screen_together};
 
 /// What happened to one hypothesis in one round.
 #[derive(Clone, Debug)]
@@ -108,12 +109,11 @@ pub fn search(
     if now.whole.rms() < lost::NEAR && refine(stage, &now) {
         now = now.refit(stage, plant, now.judge().set.clone(), WHOLE)?;
     }
-    while now.judge().is_significant() && now.judge().set.members.len() < limits.effects {
-        let is_active = |h: &Hypothesis| now.judge().set.members.iter().any(|(m, _)| m.title() == h.title());
+    while now.judge().is_significant() && now.judge().set.findings().count() < limits.effects {
         let all = hypotheses(stage, &now.windows)?;
         known.extend(all.iter().cloned());
-        let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) =
-            all.iter().filter(|h| !is_active(h)).cloned().partition(|h| h.is_dear);
+        let open = all.into_iter().filter_map(|h| still_open(h, &now.judge().set));
+        let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) = open.partition(|h| h.is_dear);
         let (best, mut tried) = refit_best(stage, plant, &now, (cheap, &dear), (limits, round))?;
         attempts.append(&mut tried);
         let is_worthwhile = |b: &Standing| {
@@ -122,9 +122,12 @@ pub fn search(
             b.is_better(&now) && (is_clear || !b.is_comparable(&now))
         };
         let Some(best) = best.filter(is_worthwhile) else { break };
-        let added = best.judge().set.members.last().map(|(h, _)| h.title()).unwrap_or_default();
+        let is_old = |h: &Hypothesis| now.judge().set.findings().any(|(m, _)| m.title() == h.title());
+        let members = best.judge().set.findings().map(|(h, _)| h);
+        let added: Vec<String> = members.filter(|h| !is_old(h)).map(Hypothesis::title).collect();
         let of_round = attempts.iter_mut().filter(|t| t.round == round);
-        of_round.for_each(|t| t.kept = format!("{} at {}", t.name, t.place) == added);
+        of_round.for_each(|t| t.kept = added.contains(&format!("{} at {}", t.name, t.place)));
+        let added = added.join(", ");
         let set = best.judge().set.clone();
         let before = now;
         let is_finer = refine(stage, &best);
@@ -134,7 +137,7 @@ pub fn search(
             true => best.refit_here(stage, plant, set, effort)?,
             false => best,
         };
-        let found = now.judge().set.members.iter().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
+        let found = now.judge().set.findings().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
         stage.work.watch.step(&format!("kept {added}: {}, {found}", errors(&now)));
         // A law that has grown into a plainer one has numbers that would follow what is still left.
         let brought = if before.is_comparable(&now) { before.judge().cost - now.judge().cost } else { f64::INFINITY };
@@ -149,9 +152,18 @@ pub fn search(
     Ok((prune(stage, plant, now)?, attempts))
 }
 
+/// A hypothesis that may act beside a set: none of its members, and of the numbers that have a tolerance one that stands at its end.
+fn still_open(h: Hypothesis, set: &EffectSet) -> Option<Hypothesis> {
+    match set.members.iter().find(|(m, _)| m.title() == h.title()) {
+        None => Some(h),
+        Some((m, x)) if m.is_tolerated() && m.is_at_bound(x) => Some(h.screened_beside(x)),
+        Some(_) => None,
+    }
+}
+
 /// Name and place of every member.
 fn titles(standing: &Standing) -> Vec<(String, String)> {
-    standing.judge().set.members.iter().map(|(h, _)| (h.name.to_owned(), h.place.clone())).collect()
+    standing.judge().set.findings().map(|(h, _)| (h.name.to_owned(), h.place.clone())).collect()
 }
 
 /// What a law has brought belongs to the plainer one that has taken its place.
@@ -262,6 +274,12 @@ fn refit_best(
             ready.sort_by(by_criterion);
             all.extend(dear.iter().cloned());
         }
+        if here.excess() - brought_by(here, &ready) > UNEXPLAINED * here.excess() {
+            let most = limits.effects - here.set.findings().count();
+            let sets = screen_together(stage, plant, here, (&all, &scores, most))?;
+            ready.extend(refit_together(stage, plant, here, (&all, &sets), &mut attempts));
+            ready.sort_by(by_criterion);
+        }
         put_corrections_first(here, &mut ready);
         // Over whole runs only what the windows did not rule out is screened.
         let order: Vec<(String, String)> =
@@ -303,7 +321,7 @@ fn by_criterion(a: &(usize, Fit), b: &(usize, Fit)) -> std::cmp::Ordering {
 fn put_corrections_first(here: &Fit, ready: &mut [(usize, Fit)]) {
     let enough = ready.first().map_or(0.0, |r| criterion(&r.1)) + CORRECTION * brought_by(here, ready);
     let is_correction = |r: &(usize, Fit)| r.1.set.ends_with_correction() && criterion(&r.1) < enough;
-    if let Some(at) = ready.iter().position(is_correction).filter(|_| !here.set.members.is_empty()) {
+    if let Some(at) = ready.iter().position(is_correction).filter(|_| here.set.has_findings()) {
         ready[..=at].rotate_right(1);
     }
 }
@@ -317,7 +335,7 @@ fn brought_by(here: &Fit, ready: &[(usize, Fit)]) -> f64 {
 fn is_luxury(now: &Standing, plain: &Standing, other: &Standing) -> bool {
     let [plain_costs, other_costs] = [plain, other].map(|s| criterion(s.judge()));
     let brought = criterion(now.judge()) - other_costs;
-    !now.judge().set.members.is_empty()
+    now.judge().set.has_findings()
         && plain.judge().set.ends_with_correction()
         && !other.judge().set.ends_with_correction()
         && plain.is_comparable(other)
@@ -412,7 +430,53 @@ fn refit_promising(
     Ok(ready)
 }
 
+/// Refits sets that promise more than any of their members: index of the attempt of the last one, and fit.
+fn refit_together(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    here: &Fit,
+    (all, sets): (&[Hypothesis], &[Ensemble]),
+    attempts: &mut [Attempt],
+) -> Vec<(usize, Fit)> {
+    let mut ready = Vec::new();
+    for ensemble in sets {
+        let titles: Vec<String> = ensemble.members.iter().map(|(h, _)| all[*h].title()).collect();
+        let promised = 100.0 * ensemble.score / here.cost;
+        stage.work.watch.step(&format!("  {} together promise {promised:.1} % of the cost", titles.join(", ")));
+        let Ok(tried) = fit(stage, plant, ensemble.beside(&here.set, all), here.segments.clone(), LOOK) else {
+            continue;
+        };
+        let found = tried.set.findings().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
+        stage.work.watch.step(&format!("refit together {found}: error {:.3} → {:.3}", here.rms(), tried.rms()));
+        let at = |title: &String| attempts.iter().position(|a| format!("{} at {}", a.name, a.place) == *title);
+        let places: Vec<Option<usize>> = titles.iter().map(at).collect();
+        if tried.cost >= here.cost {
+            continue;
+        }
+        let kept = (here.cost - tried.cost) / ensemble.score.max(f64::MIN_POSITIVE);
+        for (place, part) in places.iter().zip(&ensemble.parts).filter_map(|(p, part)| p.map(|p| (p, part))) {
+            attempts[place].tell_part(here, &tried, kept.min(1.0) * part);
+        }
+        if let Some(last) = places.last().copied().flatten() {
+            ready.push((last, tried));
+        }
+    }
+    ready
+}
+
 impl Attempt {
+    /// What it brings beside others that were fitted with it.
+    fn tell_part(&mut self, before: &Fit, after: &Fit, part: f64) {
+        if self.fall.is_some_and(|fall| fall >= part) {
+            return;
+        }
+        self.fall = Some(part);
+        self.share = (part / before.excess().max(0.2 * before.noise)).clamp(0.0, 1.0);
+        self.gain = Some(part - self.parameters as f64 * (before.count as f64).ln());
+        let is_this = |m: &&(Hypothesis, Vec<f64>)| m.0.name == self.name && m.0.place == self.place;
+        self.found = after.set.members.iter().find(is_this).map(|m| m.1.clone()).unwrap_or_default();
+    }
+
     fn new(round: usize, h: &Hypothesis, score: &Score, beside: &Fit) -> Self {
         Self {
             round,

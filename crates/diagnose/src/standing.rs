@@ -17,7 +17,8 @@ use std::sync::Arc;
 /// Schwarz's criterion, with what is held against some members beforehand.
 pub fn criterion(fit: &Fit) -> f64 {
     let burden: f64 = fit.set.members.iter().map(|(h, _)| h.burden()).sum();
-    fit.cost + fit.set.slots().len() as f64 * (fit.count as f64).ln() + burden
+    let free = fit.set.slots().iter().filter(|(m, _)| !fit.set.members[*m].0.is_tolerated()).count();
+    fit.cost + fit.set.prior_cost() + free as f64 * (fit.count as f64).ln() + burden
 }
 
 /// A set of effects, fitted at both lengths.
@@ -128,7 +129,9 @@ impl Standing {
 
     fn climb(&self, stage: &Stage<'_>, plant: &Plant, mut windows: Fit, effort: Effort) -> Result<Self, DiagnoseError> {
         let mut rungs = self.rungs.clone();
-        while let Some(rung) = rungs.first() {
+        // What is not followed over short windows is not over longer ones.
+        let is_followed = raw_rms(stage, &windows) <= FAIR || lost::calc_share(stage, &windows) <= FEW;
+        while let Some(rung) = rungs.first().filter(|_| is_followed) {
             let begun = begun_as(rung, &windows.segments);
             let settled = settled(stage, plant, windows.set.frozen(), begun)?;
             let settled = Fit { set: windows.set.clone(), covariance: windows.covariance.clone(), ..settled };
@@ -375,6 +378,14 @@ const TURNS: usize = 4;
 const ROBUST: usize = 2;
 /// Share of the cost below which that must bring it to be worth another fit.
 const LOWER: f64 = 0.95;
+
+/// Root mean square of a fit whose segments count by what is in them.
+fn raw_rms(stage: &Stage<'_>, fit: &Fit) -> f64 {
+    let of = |s: &Segment| (stage.residuals(&fit.built, s).norm_squared() / s.weight, stage.count(s) as f64);
+    let all: Vec<(f64, f64)> = fit.segments.par_iter().map(of).collect();
+    let (cost, count) = all.iter().fold((0.0, 0.0), |sum, s| (sum.0 + s.0, sum.1 + s.1));
+    (cost / f64::max(count, 1.0)).sqrt()
+}
 
 fn length_of(segments: &[Segment]) -> f64 {
     segments.first().map_or(0.0, |s| s.span.to - s.span.from)

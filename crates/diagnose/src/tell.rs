@@ -24,7 +24,7 @@ pub(crate) fn tell(
     scenario: &str,
     folder: &Path,
 ) -> (Diagnosis, Evidence) {
-    let effects = if findings.verdict == Verdict::Unknown { Vec::new() } else { effects(findings) };
+    let effects = if findings.verdict == Verdict::Unknown { Vec::new() } else { effects(findings, false) };
     let features = find_features(stage, &findings.nominal);
     let recording = folder.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let diagnosis = Diagnosis {
@@ -34,8 +34,9 @@ pub(crate) fn tell(
         verdict: findings.verdict,
         located: located(findings, stage, &features),
         effects,
+        within_tolerance: effects_within(findings),
         error: errors(findings, stage),
-        explained_share: (findings.verdict.is_found() && !findings.found.set.members.is_empty())
+        explained_share: (findings.verdict.is_found() && findings.found.set.has_findings())
             .then(|| findings.explained.clone()),
         remainder: remainder(findings, stage, &features),
         remarks: inspection
@@ -44,6 +45,7 @@ pub(crate) fn tell(
             .filter(|r| r.severity > record::Severity::Note)
             .map(|r| r.what.clone())
             .chain(findings.said.iter().cloned())
+            .chain(said_of_tolerances(findings))
             .chain(lost_runs(findings, stage))
             .collect(),
     };
@@ -93,7 +95,7 @@ fn lost_runs(findings: &Findings, stage: &Stage<'_>) -> Vec<String> {
     let of = |segment: &Segment| {
         let tape = &stage.tapes[segment.run];
         let (file, until) = (&tape.file, segment.span.to);
-        let is_cut = findings.follows && until < tape.span.1 && !findings.found.set.members.is_empty();
+        let is_cut = findings.follows && until < tape.span.1 && findings.found.set.has_findings();
         is_cut.then(|| {
             format!(
                 "{file} is followed up to {until:.4} s only, as the other runs are to their ends: something else \
@@ -131,7 +133,29 @@ fn covariance_of(findings: &Findings, member: usize) -> DMatrix<f64> {
     })
 }
 
-fn effects(findings: &Findings) -> Vec<Found> {
+/// Nominal numbers that were corrected within their tolerances.
+fn effects_within(findings: &Findings) -> Vec<Found> {
+    effects(findings, true)
+}
+
+/// How many they are, and which has moved most.
+fn said_of_tolerances(findings: &Findings) -> Option<String> {
+    let members: Vec<_> = findings.found.set.members.iter().filter(|(h, _)| h.is_tolerated()).collect();
+    let moved = |(h, x): &&(crate::hypothesis::Hypothesis, Vec<f64>)| {
+        let of = |k: usize| (x[k] - h.coordinates[k].neutral).abs() / h.tolerance[k];
+        (0..x.len()).filter(|k| h.tolerance[*k] > 0.0).map(of).fold(0.0, f64::max)
+    };
+    let most = members.iter().copied().max_by(|a, b| moved(&a).total_cmp(&moved(&b)))?;
+    Some(format!(
+        "{} nominal numbers or vectors were free within the tolerances of the scenario; {} has moved most, by {:.1} standard deviations.",
+        members.len(),
+        most.0.title(),
+        moved(&most)
+    ))
+}
+
+/// The members of the set that are findings, or those within tolerances.
+fn effects(findings: &Findings, tolerated: bool) -> Vec<Found> {
     let fit = &findings.found;
     let of = |(m, (h, x)): (usize, &(crate::hypothesis::Hypothesis, Vec<f64>))| {
         let effect = h.effect(x);
@@ -153,7 +177,7 @@ fn effects(findings: &Findings) -> Vec<Found> {
         }
         Found { name: effect.name, place: effect.place, params: effect.params, std_err, rivals: rivals(findings, h) }
     };
-    fit.set.members.iter().enumerate().map(of).collect()
+    fit.set.members.iter().enumerate().filter(|(_, (h, _))| h.is_tolerated() == tolerated).map(of).collect()
 }
 
 /// Hypotheses whose refit came near the chosen one's in the round in which it was chosen.
@@ -192,13 +216,13 @@ fn located(findings: &Findings, stage: &Stage<'_>, features: &Features) -> Vec<L
         Verdict::Unknown => by_force().into_iter().map(|(n, s)| place(n.clone(), s, condition_of(&n))).collect(),
         _ => {
             // Two effects at one place are one place; a law that took another's place at the end stands for that.
-            let members = &findings.found.set.members;
+            let members: Vec<_> = findings.found.set.findings().collect();
             let is_member = |place: &str| members.iter().any(|(h, _)| h.place == place);
             let kept = || findings.attempts.iter().filter(|a| a.kept);
             let most =
                 |places: &dyn Fn(&str) -> bool| kept().filter(|a| places(&a.place)).map(|a| a.share).reduce(f64::max);
             let mut shares: Vec<(String, f64)> = Vec::new();
-            for (h, _) in members {
+            for (h, _) in &members {
                 let own = most(&|place| place == h.place).or_else(|| most(&|place| !is_member(place)));
                 if !shares.iter().any(|s| s.0 == h.place) {
                     shares.push((h.place.clone(), own.unwrap_or(1.0)));
@@ -279,7 +303,7 @@ fn nan_unless_finite(x: f64) -> f64 {
 const RIDGE: f64 = 1e4;
 
 fn ranking(findings: &Findings) -> Vec<Hypothesis> {
-    let near: Vec<Rival> = findings.found.set.members.iter().flat_map(|(h, _)| rivals(findings, h)).collect();
+    let near: Vec<Rival> = findings.found.set.findings().flat_map(|(h, _)| rivals(findings, h)).collect();
     let is_rival = |a: &crate::search::Attempt| near.iter().any(|r| r.name == a.name && r.place == a.place);
     let held_back = nan_unless_finite(fall_of(findings) - findings.uncertainty.optimism);
     let nan = |x: Option<f64>| x.map_or(f64::NAN, nan_unless_finite);
@@ -309,7 +333,7 @@ fn ranking(findings: &Findings) -> Vec<Hypothesis> {
 fn parameters(findings: &Findings) -> Vec<Parameter> {
     let fit = &findings.found;
     let mut all = Vec::new();
-    for (m, (h, x)) in fit.set.members.iter().enumerate() {
+    for (m, (h, x)) in fit.set.members.iter().enumerate().filter(|(_, (h, _))| !h.is_tolerated()) {
         let nominal = h.decode(&h.neutral());
         let slots = fit.set.slots().into_iter().zip(&findings.uncertainty.from_profile);
         let is_profiled = slots.filter(|(slot, _)| slot.0 == m).any(|(_, is_profiled)| *is_profiled);

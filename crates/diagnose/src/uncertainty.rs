@@ -48,7 +48,12 @@ pub(crate) fn estimate(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<
     let variations = vary(plant, &found.set, &slots, &sizes)?;
     let linear: Vec<SegmentLinear> =
         found.segments.par_iter().map(|s| linearised(stage, found, s, &variations)).collect();
-    let a: DMatrix<f64> = linear.iter().map(|l| l.reduced.view((0, 0), (n, n)).into_owned()).sum();
+    let mut a = DMatrix::zeros(n + 1, n + 1);
+    found.set.add_prior(&mut a);
+    let a: DMatrix<f64> = linear
+        .iter()
+        .map(|l| l.reduced.view((0, 0), (n, n)).into_owned())
+        .fold(a.view((0, 0), (n, n)).into_owned(), |sum, own| sum + own);
     let inverse = pseudo_inverse(&a);
     let gradients: Vec<DVector<f64>> =
         linear.iter().map(|l| l.reduced.view((0, n + 1), (n, 1)).column(0).into()).collect();
@@ -58,6 +63,11 @@ pub(crate) fn estimate(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<
     let mut widths = DVector::zeros(n);
     let mut from_profile = vec![false; n];
     for i in 0..n {
+        // What only moves within its tolerance is no finding whose error is told.
+        if found.set.members[slots[i].0].0.is_tolerated() {
+            widths[i] = inverse[(i, i)].max(0.0);
+            continue;
+        }
         let curvature = inverse[(i, i)].max(0.0).sqrt();
         let profile = calc_profile(stage, plant, (found, &linear), (&inverse, i));
         from_profile[i] = profile > SAME * curvature && profile.powi(2) >= scatter[i];

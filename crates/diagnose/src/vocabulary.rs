@@ -5,11 +5,14 @@ pub fn plain_name(effect: &str) -> &str {
     WORDS.iter().find(|(name, _)| *name == effect).map_or(effect, |(_, words)| words)
 }
 
-const WORDS: [(&str, &str); 46] = [
+const WORDS: [(&str, &str); 49] = [
     ("joint-viscous-friction", "viscous friction"),
     ("joint-coulomb-friction", "dry (Coulomb) friction"),
     ("joint-stribeck-friction", "dry friction that is higher at breakaway than in sliding (Stribeck)"),
     ("joint-friction-asymmetry", "dry friction that differs between the two directions"),
+    ("joint-viscous-asymmetry", "viscous friction that differs between the two directions"),
+    ("joint-quadratic-friction", "friction that grows with the square of the rate"),
+    ("joint-offset", "a constant effort"),
     ("joint-backlash", "backlash"),
     ("joint-elasticity", "elasticity between motor and link"),
     ("joint-torque-ripple", "a torque ripple that follows the joint's angle"),
@@ -59,7 +62,9 @@ const WORDS: [(&str, &str); 46] = [
 pub fn unit(effect: &str, parameter: &str, along: bool) -> &'static str {
     let pick = |turning: &'static str, sliding: &'static str| if along { sliding } else { turning };
     match (effect, parameter) {
-        ("joint-viscous-friction", "b") => pick("N m s/rad", "N s/m"),
+        ("joint-viscous-friction" | "joint-viscous-asymmetry", _) => pick("N m s/rad", "N s/m"),
+        ("joint-quadratic-friction", _) => pick("N m s²/rad²", "N s²/m²"),
+        ("joint-offset", _) => pick("N m", "N"),
         ("joint-stribeck-friction", "v_s") => pick("rad/s", "m/s"),
         ("joint-coulomb-friction" | "joint-stribeck-friction" | "joint-friction-asymmetry", _) => pick("N m", "N"),
         ("joint-backlash", "gap") | ("joint-cable-stiffness", "q_rest") => pick("rad", "m"),

@@ -72,6 +72,9 @@ fn neutral_entry_changes_no_bit_and_a_millionth_beside_it_does() {
         ("joint-coulomb-friction", "joint:left/joint_2", "c = 0.0", "c = 1e-6"),
         ("joint-stribeck-friction", "joint:left/joint_2", "c = 0\ns = 0\nv_s = 0.1", "c = 0\ns = 1e-6\nv_s = 0.1"),
         ("joint-friction-asymmetry", "joint:left/joint_2", "c_plus = 0\nc_minus = 0", "c_plus = 1e-6\nc_minus = 1e-6"),
+        ("joint-viscous-asymmetry", "joint:left/joint_2", "b_plus = 0\nb_minus = 0", "b_plus = 1e-6\nb_minus = 1e-6"),
+        ("joint-quadratic-friction", "joint:left/joint_2", "b_2 = 0.0", "b_2 = 1e-6"),
+        ("joint-offset", "joint:left/joint_2", "effort = 0.0", "effort = 1e-6"),
         ("joint-backlash", "joint:left/joint_2", "gap = 0\nk = inf", "gap = 1e-6\nk = 1e4"),
         ("joint-elasticity", "joint:left/joint_2", "k = inf\nd = 3", "k = 1e4\nd = 3"),
         (

@@ -1,7 +1,7 @@
 //! What differs between a baseline and now, in sentences.
 
 use super::baseline::{Baseline, CampaignBaseline, Curves};
-use super::tolerance::{FALSE_ALARM, WORK, of_curve, of_metric};
+use super::margin::{FALSE_ALARM, WORK, of_curve, of_metric};
 use crate::stats::kolmogorov_smirnov;
 use scenario::Scenario;
 use serde_json::{Map, Value};
@@ -109,7 +109,7 @@ fn metric_change(scenario: &Scenario, name: &str, a: Option<&Value>, b: Option<&
     let Some((x, y)) = numbers else {
         return (a != b).then(|| format!("{name}: {} → {}", shown(a), shown(b)));
     };
-    let (absolute, relative) = of_metric(name, &scenario.tolerances);
+    let (absolute, relative) = of_metric(name, &scenario.margins);
     let allowed = absolute + relative * x.abs();
     let share = if x == 0.0 { String::new() } else { format!(" ({:+.3} %)", 100.0 * (y - x) / x.abs()) };
     ((y - x).abs() > allowed).then(|| format!("{name}: {} → {}{share}, allowed ± {allowed:.2e}", shown(a), shown(b)))
@@ -135,7 +135,7 @@ fn curve_changes(scenario: &Scenario, then: &Curves, now: &Curves) -> Vec<String
         let finite = || a.iter().flatten();
         let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
         let range = if high > low { high - low } else { 0.0 };
-        let allowed = of_curve(name, range, &scenario.tolerances);
+        let allowed = of_curve(name, range, &scenario.margins);
         let gaps: Vec<(f64, f64)> =
             (0..together.min(a.len()).min(b.len())).filter_map(|i| Some((then.t[i], (a[i]? - b[i]?).abs()))).collect();
         let Some((since, _)) = gaps.iter().find(|(_, gap)| *gap > allowed) else { continue };

@@ -7,7 +7,7 @@
 mod baseline;
 mod changes;
 mod junit;
-mod tolerance;
+mod margin;
 
 pub use baseline::{Baseline, CampaignBaseline, Curves, Entry};
 pub use changes::{Change, Group, find_changes};

@@ -20,7 +20,7 @@ pub type Look = BTreeMap<&'static str, u64>;
 pub fn look(scenario: &Scenario) -> Result<Look, String> {
     let mut look = Look::new();
     run(scenario, &mut look)?;
-    if !scenario.mutations.is_empty() || !scenario.tolerances.is_empty() {
+    if !scenario.mutations.is_empty() || !scenario.margins.is_empty() {
         look.insert("regression", digest(&regression(scenario)?));
     }
     if let Some(own) = &scenario.campaign {

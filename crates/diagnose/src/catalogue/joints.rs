@@ -22,6 +22,12 @@ pub(super) fn add(joint: &JointFact, facts: &Facts, all: &mut Vec<Hypothesis>) {
     );
     let sides = vec![Coordinate::level("c_plus", 0.0), Coordinate::level("c_minus", 0.0)];
     all.push(hypothesis("joint-friction-asymmetry", place, sides).screened(&[(0, SMALL), (1, SMALL)]));
+    let sides = vec![Coordinate::level("b_plus", 0.0), Coordinate::level("b_minus", 0.0)];
+    all.push(hypothesis("joint-viscous-asymmetry", place, sides).screened(&[(0, SMALL), (1, SMALL)]));
+    all.push(
+        hypothesis("joint-quadratic-friction", place, vec![Coordinate::level("b_2", 0.0)]).screened(&[(0, SMALL)]),
+    );
+    all.push(hypothesis("joint-offset", place, vec![Coordinate::free("effort", 0.0)]).screened(&[(0, SMALL)]));
     add_springs(joint, place, all);
     add_periodic(place, facts, all);
     all.push(

@@ -5,6 +5,9 @@ mod bodies;
 mod contacts;
 mod joints;
 mod sensors;
+mod tolerances;
+
+pub use tolerances::within;
 
 use crate::facts::Facts;
 use crate::hypothesis::{Column, Coordinate, Encoding, Hypothesis, ScreenPoint, Tier};
@@ -34,6 +37,7 @@ fn hypothesis(name: &'static str, place: &str, coordinates: Vec<Coordinate>) -> 
         tier: Tier::Exotic,
         held: Vec::new(),
         is_dear: false,
+        tolerance: Vec::new(),
     }
 }
 

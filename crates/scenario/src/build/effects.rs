@@ -60,6 +60,9 @@ fn family(name: EffectName, place: PlaceKind) -> Family {
         | N::JointCoulombFriction
         | N::JointStribeckFriction
         | N::JointFrictionAsymmetry
+        | N::JointViscousAsymmetry
+        | N::JointQuadraticFriction
+        | N::JointOffset
         | N::JointBacklash
         | N::JointElasticity
         | N::JointTorqueRipple

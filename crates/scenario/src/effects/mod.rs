@@ -42,6 +42,9 @@ names! {
     JointCoulombFriction = "joint-coulomb-friction", "Dry friction of a joint.";
     JointStribeckFriction = "joint-stribeck-friction", "Dry friction of a joint, higher at rest than in motion.";
     JointFrictionAsymmetry = "joint-friction-asymmetry", "Dry friction of a joint that differs by direction.";
+    JointViscousAsymmetry = "joint-viscous-asymmetry", "Viscous friction of a joint that differs by direction.";
+    JointQuadraticFriction = "joint-quadratic-friction", "Friction of a joint that grows with the square of its rate.";
+    JointOffset = "joint-offset", "A constant effort at a joint.";
     JointBacklash = "joint-backlash", "Play between motor side and link side.";
     JointElasticity = "joint-elasticity", "A spring between motor side and link side.";
     JointTorqueRipple = "joint-torque-ripple", "A torque periodic in the joint's position.";

@@ -61,6 +61,11 @@ fn of_joint(name: EffectName) -> Option<Row> {
         N::JointFrictionAsymmetry => {
             (&[Joint], &const { [zero("c_plus", AT_LEAST_ZERO), zero("c_minus", AT_LEAST_ZERO)] })
         }
+        N::JointViscousAsymmetry => {
+            (&[Joint], &const { [zero("b_plus", AT_LEAST_ZERO), zero("b_minus", AT_LEAST_ZERO)] })
+        }
+        N::JointQuadraticFriction => (&[Joint], &const { [zero("b_2", AT_LEAST_ZERO)] }),
+        N::JointOffset => (&[Joint], &const { [zero("effort", ANY)] }),
         N::JointBacklash => (
             &[Joint],
             &const {

@@ -21,6 +21,7 @@ mod regress;
 mod sensor;
 mod shape;
 mod strategy;
+mod tolerance;
 mod vehicle;
 
 pub use actuator::{Actuator, ActuatorKind, Drive, DriveAxis, DriveMotion, JointDrive};
@@ -36,10 +37,11 @@ pub use mechanism::{
     Capture, Hold, Latch, Mechanism, MechanismKind, MechanismSide, Overload, PerAxis, Strut, StrutSides, Weld,
 };
 pub use pose::{PoseSpec, TwistSpec};
-pub use regress::Tolerance;
+pub use regress::Margin;
 pub use sensor::{MechanismEnd, Sensor, SensorKind};
 pub use shape::{Shape, ShapeKind};
 pub use strategy::{Command, OneOrMany, Replay, Schedule, SoftDock, Strategy, TrackAndGrasp};
+pub use tolerance::Tolerance;
 pub use vehicle::{Base, BaseAxis, BaseKind, EndEffectorPose, JointStart, PartialBase, Vehicle};
 
 use crate::document::Source;
@@ -101,6 +103,9 @@ pub struct Scenario {
     /// Physics beyond the nominal model.
     #[serde(default, rename = "effect", skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<Effect>,
+    /// How far nominal numbers may be off, for a diagnosis.
+    #[serde(default, skip_serializing_if = "Tolerance::is_exact")]
+    pub tolerance: Tolerance,
     /// What counts as docked; metrics and the outcome of a docking come with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub docking: Option<Docking>,
@@ -111,8 +116,8 @@ pub struct Scenario {
     #[serde(default, rename = "expect", skip_serializing_if = "Vec::is_empty")]
     pub expects: Vec<Expect>,
     /// How far a regression run may be from its baseline.
-    #[serde(default, rename = "tolerance", skip_serializing_if = "Vec::is_empty")]
-    pub tolerances: Vec<Tolerance>,
+    #[serde(default, rename = "margin", skip_serializing_if = "Vec::is_empty")]
+    pub margins: Vec<Margin>,
     /// Changes that must end otherwise.
     #[serde(default, rename = "mutation", skip_serializing_if = "Vec::is_empty")]
     pub mutations: Vec<Mutation>,

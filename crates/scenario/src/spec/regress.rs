@@ -3,13 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A tolerance of metrics or of signals; of several that match the last one decides.
+/// A margin of metrics or of signals; of several that match the last one decides.
 ///
 /// Without any, numbers may differ by a hundred-thousandth, curves by a ten-thousandth of their own range, counters by half a per cent.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("x-exactly-one" = [["metric", "signal"]]))]
-pub struct Tolerance {
+pub struct Margin {
     /// Metrics, by glob.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1))]

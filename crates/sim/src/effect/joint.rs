@@ -2,7 +2,9 @@
 //!
 //! | law | effort, N·m or N |
 //! | --- | --- |
-//! | viscous | −b q̇ |
+//! | viscous | −b q̇, of one value or of two by the sign of q̇ |
+//! | quadratic | −b₂ |q̇| q̇ |
+//! | offset | e |
 //! | dry | −(g/z₀)(z + t_d ż e^(−(q̇/v_d)²)),  ż = q̇ − |q̇| z/z₀ |
 //! | ripple | A sin(n q + φ) |
 //! | cable | −k (q − q_rest) |
@@ -35,6 +37,23 @@ pub enum JointLaw {
     Viscous {
         /// N·m·s/rad or N·s/m.
         damping: f64,
+    },
+    /// The same with a number for each direction.
+    ViscousBySide {
+        /// Where q̇ ≥ 0, N·m·s/rad or N·s/m.
+        plus: f64,
+        /// Elsewhere.
+        minus: f64,
+    },
+    /// Against the square of the rate.
+    Quadratic {
+        /// N·m·s²/rad² or N·s²/m².
+        drag: f64,
+    },
+    /// The same always: what a drive adds to its command, a weight that is not in the model.
+    Offset {
+        /// N·m or N.
+        effort: f64,
     },
     /// Dahl's dry friction.
     Dry(DryLevel),
@@ -170,6 +189,12 @@ impl JointEffect {
     ) -> (f64, f64) {
         match self.law {
             JointLaw::Viscous { damping } => (-damping * v, damping * at.theta),
+            JointLaw::ViscousBySide { plus, minus } => {
+                let damping = if v >= 0.0 { plus } else { minus };
+                (-damping * v, damping * at.theta)
+            }
+            JointLaw::Quadratic { drag } => (-drag * v.abs() * v, 2.0 * drag * v.abs() * at.theta),
+            JointLaw::Offset { effort } => (effort, 0.0),
             JointLaw::Dry(level) => {
                 let z = calc_deflection(memory[0], at, at.moved_base + at.beta * v_new, v);
                 level.eval(z, v, at.beta, at.theta)
@@ -200,7 +225,7 @@ impl JointEffect {
 
     /// Whether what it does is a potential, in [`Self::calc_energy`]; else its work is booked.
     pub(crate) fn stores(&self) -> bool {
-        matches!(self.law, JointLaw::Cable { .. } | JointLaw::Ripple { .. })
+        matches!(self.law, JointLaw::Cable { .. } | JointLaw::Ripple { .. } | JointLaw::Offset { .. })
     }
 
     /// What its spring holds, J.
@@ -209,7 +234,12 @@ impl JointEffect {
             JointLaw::Cable { stiffness, rest } => 0.5 * stiffness * (q - rest) * (q - rest),
             JointLaw::Ripple { amplitude, order: 0.0, phase } => -amplitude * phase.sin() * q,
             JointLaw::Ripple { amplitude, order, phase } => amplitude / order * (order * q + phase).cos(),
-            JointLaw::Viscous { .. } | JointLaw::Dry(_) | JointLaw::Periodic { .. } => 0.0,
+            JointLaw::Offset { effort } => -effort * q,
+            JointLaw::Viscous { .. }
+            | JointLaw::ViscousBySide { .. }
+            | JointLaw::Quadratic { .. }
+            | JointLaw::Dry(_)
+            | JointLaw::Periodic { .. } => 0.0,
         }
     }
 }

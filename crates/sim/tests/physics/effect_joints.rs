@@ -80,6 +80,25 @@ fn levels_of_dry_friction_are_those_of_speed_and_direction() {
 }
 
 #[test]
+fn rates_follow_their_closed_forms_under_quadratic_friction_an_offset_and_viscous_friction_by_side() {
+    let after = |law: JointLaw, v: f64| {
+        let mut world = wheel_world(&[on_joint(law)], &Setup::new(Integrator::RungeKutta4));
+        world.state_mut().v[0] = v;
+        run(&mut world, 500);
+        (world.state().v[0], world.state().time)
+    };
+    for v in [2.0, -2.0] {
+        let (end, t) = after(JointLaw::Quadratic { drag: 0.9 }, v);
+        assert!((end - v / (1.0 + 0.9 * v.abs() * t / INERTIA)).abs() < 1e-9, "I v̇ = −b₂|v|v: {end}");
+        let (end, t) = after(JointLaw::Offset { effort: 0.3 }, v);
+        assert!((end - v - 0.3 * t / INERTIA).abs() < 1e-9, "{end}");
+        let (end, t) = after(JointLaw::ViscousBySide { plus: 0.9, minus: 0.4 }, v);
+        let damping = if v > 0.0 { 0.9 } else { 0.4 };
+        assert!((end - v * (-damping * t / INERTIA).exp()).abs() < 1e-9, "{end}");
+    }
+}
+
+#[test]
 fn small_motion_about_a_rest_deflection_is_damped_by_its_micro_damping() {
     // I ẍ = −(c/z₀)(x + 0.002 ẋ) about z = 0: ω = √(c/(z₀ I)) = 73 rad/s, damping ratio ω/2 · 2 ms = 0.073. Dahl's own
     // loss at |z| ≪ z₀ is small beside it.

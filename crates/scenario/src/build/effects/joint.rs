@@ -42,6 +42,11 @@ fn law(entry: &Entry<'_>, faults: &mut Faults<'_>) -> Option<JointLaw> {
         EffectName::JointFrictionAsymmetry => {
             JointLaw::Dry(DryLevel::Directed { c_plus: number("c_plus"), c_minus: number("c_minus") })
         }
+        EffectName::JointViscousAsymmetry => {
+            JointLaw::ViscousBySide { plus: number("b_plus"), minus: number("b_minus") }
+        }
+        EffectName::JointQuadraticFriction => JointLaw::Quadratic { drag: number("b_2") },
+        EffectName::JointOffset => JointLaw::Offset { effort: number("effort") },
         EffectName::JointTorqueRipple => {
             JointLaw::Ripple { amplitude: number("amplitude"), order: number("order"), phase: number("phase") }
         }

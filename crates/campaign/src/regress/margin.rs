@@ -1,9 +1,9 @@
 //! How far what may be from its baseline.
 
 use scenario::glob_matches;
-use scenario::spec::Tolerance;
+use scenario::spec::Margin;
 
-/// Differences allowed where no `[[tolerance]]` says otherwise: (name, absolute, relative); the last that matches decides.
+/// Differences allowed where no `[[margin]]` says otherwise: (name, absolute, relative); the last that matches decides.
 ///
 /// On one machine runs repeat to the bit. Between machines the last bits of elementary functions differ, and contact makes them
 /// larger; these bounds leave room for that and for nothing else.
@@ -25,7 +25,7 @@ pub(super) const WORK: f64 = 5e-3;
 pub(super) const FALSE_ALARM: f64 = 1e-3;
 
 /// Absolute and relative difference that a metric may have.
-pub(super) fn of_metric(name: &str, own: &[Tolerance]) -> (f64, f64) {
+pub(super) fn of_metric(name: &str, own: &[Margin]) -> (f64, f64) {
     let matches = |pattern: &Option<String>| pattern.as_ref().is_some_and(|p| glob_matches(p, name));
     if let Some(t) = own.iter().rev().find(|t| matches(&t.metric)) {
         return (t.absolute, t.relative);
@@ -40,7 +40,7 @@ fn is_impulse(pattern: &str, name: &str) -> bool {
 }
 
 /// Absolute difference that a curve of this range may have.
-pub(super) fn of_curve(name: &str, range: f64, own: &[Tolerance]) -> f64 {
+pub(super) fn of_curve(name: &str, range: f64, own: &[Margin]) -> f64 {
     let matches = |pattern: &Option<String>| pattern.as_ref().is_some_and(|p| glob_matches(p, name));
     let (absolute, relative) =
         own.iter().rev().find(|t| matches(&t.signal)).map_or(CURVE, |t| (t.absolute, t.relative));

@@ -1,0 +1,211 @@
+//! Several effects at once: one linear screen of all hypotheses together, and a selection among them.
+//!
+//! Where a rig departs from its model in several ways, the effect that promises most alone may be none of them: it stands for what they
+//! have in common. The screen of [`crate::screen`] looks at one hypothesis at a time; here the columns of all of them stand in one Gram
+//! matrix, starts and active parameters eliminated, and the fall of the cost that a *set* S promises,
+//!
+//!   b_Sᵀ A_SS⁻¹ b_S,
+//!
+//! costs a small linear system. What a model leaves that no effect of the library has is no noise, and there a criterion for noise is sure of
+//! anything: the fall is therefore judged by cross-validation, amplitudes from all folds of the segments but one, the fall in that one (Stone 1974). Sets grow by one effect at a time, the best few of each size go on (beam search), so that what was taken first
+//! can turn out to be nothing beside two others. A set whose amplitudes no effect can have (friction that drives) is none.
+
+use crate::error::DiagnoseError;
+use crate::fit::{EffectSet, Fit, pseudo_inverse, vary};
+use crate::hypothesis::Hypothesis;
+use crate::linear::{Segment, Stage, Variation, eliminate};
+use crate::plant::Plant;
+use crate::screen::{Pilots, Probe, Score, active_size, probes_of, thinned};
+use crate::start::Freedom;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Sets of each size that go on to the next.
+const BEAM: usize = 8;
+/// Share of what a set leaves that one more effect must promise.
+const FURTHER: f64 = 0.15;
+/// Hypotheses that take part: the best of a screen by themselves.
+const TAKING_PART: usize = 60;
+/// Folds of the segments: stretches of the recording in their order.
+const FOLDS: usize = 5;
+/// Sets that are handed on.
+const HANDED: usize = 2;
+
+/// A set of effects that promises more than any of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Ensemble {
+    /// Indices of the hypotheses, and coordinates to begin a refit with.
+    pub members: Vec<(usize, Vec<f64>)>,
+    /// Promised fall of the cost.
+    pub score: f64,
+    /// What each member promises of it beside the others.
+    pub parts: Vec<f64>,
+}
+
+impl Ensemble {
+    /// Beside a set.
+    pub(crate) fn beside(&self, set: &EffectSet, all: &[Hypothesis]) -> EffectSet {
+        self.members.iter().fold(set.clone(), |set, (h, x)| set.with(&all[*h], x))
+    }
+}
+
+/// Sets of at least two effects and at most `most`, the best first; none where one effect promises nearly as much. `scores`: those of a
+/// screen beside the same fit.
+pub(crate) fn screen_together(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    fit: &Fit,
+    (all, scores, most): (&[Hypothesis], &[Score], usize),
+) -> Result<Vec<Ensemble>, DiagnoseError> {
+    let mut taking: Vec<&Score> = Vec::new();
+    for score in scores {
+        if taking.len() < TAKING_PART && taking.iter().all(|t| t.hypothesis != score.hypothesis) {
+            taking.push(score);
+        }
+    }
+    let (fit, share) = &thinned(fit);
+    let coarse = stage.coarser();
+    let pilots = Pilots::new(&coarse, fit);
+    let probes_at = |score: &&Score| {
+        let h = &all[score.hypothesis];
+        probes_of(&coarse, plant, (fit, &pilots), (h, &h.screens[score.point]))
+    };
+    let probes: Vec<Vec<Probe>> = taking.par_iter().map(probes_at).collect();
+    let slots = fit.set.slots();
+    let sizes: Vec<f64> = slots.iter().map(|(m, k)| active_size(fit, *m, *k)).collect();
+    let active = vary(plant, &fit.set, &slots, &sizes)?;
+    let gram = Gram::new(&coarse, fit, &active, &probes);
+    let linear = Linear { all, taking: &taking, gram: &gram, noise: share * fit.noise };
+    Ok(linear.select(most))
+}
+
+/// Products of the active columns, those of all hypotheses and of the residual, by fold.
+struct Gram {
+    folds: Vec<DMatrix<f64>>,
+    all: DMatrix<f64>,
+    active: usize,
+    /// First column of each hypothesis, and the number of all.
+    first: Vec<usize>,
+}
+
+impl Gram {
+    fn new(stage: &Stage<'_>, fit: &Fit, active: &[Variation], probes: &[Vec<Probe>]) -> Self {
+        let mut first = vec![active.len()];
+        probes.iter().for_each(|p| first.push(first[first.len() - 1] + p.len()));
+        let of = |segment: &Segment| {
+            let readings = stage.readings(&fit.built, segment).unwrap_or_default();
+            let r = stage.residuals_of(&readings, &fit.built, segment);
+            let start = stage.columns_of(&fit.built, segment, &r);
+            let column = |p: &Probe| match p.is_reading {
+                true => stage.column_of(&readings, &p.variation, segment, &r),
+                false => stage.column(&p.variation, segment, &r),
+            };
+            let g: Vec<DVector<f64>> = active.par_iter().map(|v| stage.column(v, segment, &r)).collect();
+            let c: Vec<DVector<f64>> = probes.par_iter().flatten().map(column).collect();
+            let starts: Vec<&DVector<f64>> = start.columns.iter().collect();
+            let others: Vec<&DVector<f64>> = g.iter().chain(&c).chain(std::iter::once(&r)).collect();
+            eliminate(&starts, &others, &vec![Freedom::Memory(0); starts.len()]).reduced
+        };
+        let parts: Vec<DMatrix<f64>> = fit.segments.par_iter().map(of).collect();
+        let side = first[probes.len()] + 1;
+        let sum = |parts: &[DMatrix<f64>]| parts.iter().fold(DMatrix::zeros(side, side), |sum, part| sum + part);
+        let folds = parts.len().clamp(1, FOLDS);
+        let bounds: Vec<usize> = (0..=folds).map(|k| k * parts.len() / folds).collect();
+        let folds: Vec<DMatrix<f64>> = bounds.windows(2).map(|b| sum(&parts[b[0]..b[1]])).collect();
+        let mut all = sum(&parts);
+        fit.set.add_prior(&mut all);
+        Self { all, folds, active: active.len(), first }
+    }
+
+    fn columns_of(&self, member: usize) -> std::ops::Range<usize> {
+        self.first[member]..self.first[member + 1]
+    }
+
+    /// Amplitudes of some hypotheses, the active parameters following, and the fall of the cost in folds that these are not taken from.
+    fn solve(&self, members: &[usize]) -> (Vec<f64>, f64) {
+        let hypotheses = members.iter().flat_map(|m| self.columns_of(*m));
+        let columns: Vec<usize> = (0..self.active).chain(hypotheses).collect();
+        let (n, last) = (columns.len(), self.all.ncols() - 1);
+        let part = |k: &DMatrix<f64>| {
+            let a = DMatrix::from_fn(n, n, |i, j| k[(columns[i], columns[j])]);
+            (a, DVector::from_fn(n, |i, _| k[(columns[i], last)]))
+        };
+        let (a, b) = part(&self.all);
+        let x = -(pseudo_inverse(&a) * &b);
+        let of_fold = |fold: &DMatrix<f64>| {
+            let (own_a, own_b) = part(fold);
+            let x = -(pseudo_inverse(&(&a - &own_a)) * (&b - &own_b));
+            -(2.0 * own_b.dot(&x) + x.dot(&(&own_a * &x)))
+        };
+        let fall = if self.folds.len() > 1 { self.folds.iter().map(of_fold).sum() } else { -b.dot(&x) };
+        (x.iter().skip(self.active).copied().collect(), fall)
+    }
+}
+
+/// The linear problem.
+struct Linear<'a> {
+    all: &'a [Hypothesis],
+    taking: &'a [&'a Score],
+    gram: &'a Gram,
+    noise: f64,
+}
+
+impl Linear<'_> {
+    /// A set with its coordinates, if its effects can have them.
+    fn ensemble(&self, members: &[usize]) -> Option<Ensemble> {
+        let (x, score) = self.gram.solve(members);
+        let mut at = 0;
+        let coordinates = |m: &usize| {
+            let (score, count) = (self.taking[*m], self.gram.columns_of(*m).len());
+            let (h, amplitudes) = (&self.all[score.hypothesis], &x[at..at + count]);
+            at += count;
+            let point = &h.screens[score.point];
+            (count == point.columns.len())
+                .then(|| h.start_from(point, amplitudes))
+                .flatten()
+                .map(|s| (score.hypothesis, s))
+        };
+        let members: Option<Vec<(usize, Vec<f64>)>> = members.iter().map(coordinates).collect();
+        members.filter(|_| score.is_finite()).map(|members| Ensemble { members, score, parts: Vec::new() })
+    }
+
+    fn select(&self, most: usize) -> Vec<Ensemble> {
+        let mut beam: Vec<(Vec<usize>, Ensemble)> = Vec::new();
+        let (cost, nothing) =
+            (self.gram.all[(self.gram.all.nrows() - 1, self.gram.all.nrows() - 1)], self.gram.solve(&[]).1);
+        for size in 1..=most {
+            let from: Vec<Vec<usize>> =
+                if size == 1 { vec![Vec::new()] } else { beam.iter().map(|b| b.0.clone()).collect() };
+            let mut sets: Vec<Vec<usize>> = Vec::new();
+            for (set, m) in from.iter().flat_map(|set| (0..self.taking.len()).map(move |m| (set, m))) {
+                let mut grown = [&set[..], &[m]].concat();
+                grown.sort_unstable();
+                if !set.contains(&m) && !sets.contains(&grown) {
+                    sets.push(grown);
+                }
+            }
+            let grown: Vec<(Vec<usize>, Ensemble)> =
+                sets.into_par_iter().filter_map(|s| self.ensemble(&s).map(|e| (s, e))).collect();
+            let mut grown = grown;
+            grown.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
+            grown.truncate(BEAM);
+            let [before, after] = [&beam, &grown].map(|sets| sets.first().map_or(nothing, |s| s.1.score));
+            let left = (cost - before - self.noise).max(0.0);
+            if after - before < (FURTHER * left).max(self.noise.max(1.0).ln()) {
+                break;
+            }
+            beam = grown;
+        }
+        beam.retain(|b| b.1.members.len() > 1);
+        beam.into_iter()
+            .take(HANDED)
+            .map(|(members, e)| Ensemble { parts: self.parts(&members, e.score), ..e })
+            .collect()
+    }
+
+    /// What each of some hypotheses promises beside the others.
+    fn parts(&self, members: &[usize], score: f64) -> Vec<f64> {
+        let without = |m: &usize| members.iter().filter(|o| *o != m).copied().collect::<Vec<usize>>();
+        members.iter().map(|m| score - self.gram.solve(&without(m)).1).collect()
+    }
+}
