@@ -307,7 +307,8 @@ impl Diagnosis {
     pub fn judged(&self) -> Judged {
         let Errors { fit, holdout, windowed, window_s, .. } = &self.error;
         let free = holdout.unwrap_or(*fit);
-        let is_predictable = free.after.is_finite() && free.after <= PREDICTABLE * windowed.after.max(1.0);
+        let is_followed = free.before.is_finite() && free.after.is_finite();
+        let is_predictable = is_followed && free.after <= PREDICTABLE * windowed.after.max(1.0);
         match is_predictable {
             true => Judged { error: free, left_out: holdout.is_some(), window_s: None },
             false => Judged { error: *windowed, left_out: holdout.is_some(), window_s: Some(*window_s) },

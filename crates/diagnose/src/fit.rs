@@ -407,7 +407,8 @@ pub fn vary(
         let vary_by = |step: f64| {
             let mut moved = set.clone();
             moved.members[*m].1[*k] += step;
-            Ok(Variation { built: plant.build(&moved.effects())?, step })
+            let is_tolerated = moved.members[*m].0.is_tolerated();
+            Ok(Variation { built: plant.build(&moved.effects())?, step, is_tolerated })
         };
         // At the edge of what can be built the other way is open, or a shorter one.
         vary_by(step).or_else(|_| vary_by(-step)).or_else(|_| vary_by(SHORTER * step))

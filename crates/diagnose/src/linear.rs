@@ -38,13 +38,16 @@ pub struct Segment {
     pub steps: Steps,
 }
 
-/// Derivatives of a segment's residual by the coordinates of its start.
+/// Derivatives of a segment's residual by the coordinates of its start, and by the numbers that only move within their tolerances: they change
+/// little from one set of effects to the next.
 #[derive(Clone, Debug)]
 pub struct StartColumns {
     /// The coordinates.
     pub freedoms: Vec<Freedom>,
     /// A column each.
     pub columns: Vec<DVector<f64>>,
+    /// Columns of the numbers with a tolerance, as last computed; empty where there are none.
+    pub within: Vec<DVector<f64>>,
 }
 
 /// Steps of the difference quotients by coordinate of a start; they live from one linearisation to the next.
@@ -58,6 +61,8 @@ pub struct Variation {
     pub built: Built,
     /// By how much.
     pub step: f64,
+    /// Whether that parameter only moves within its tolerance.
+    pub is_tolerated: bool,
 }
 
 /// Products of one segment's residuals and derivatives.
@@ -215,6 +220,26 @@ impl Stage<'_> {
         segments.par_iter().map(|segment| self.linearise_segment(built, segment, variations, reuse)).collect()
     }
 
+    /// Columns of variations; those of numbers with a tolerance may be known ones.
+    pub fn columns_by(
+        &self,
+        segment: &Segment,
+        r: &DVector<f64>,
+        variations: &[Variation],
+        reuse: bool,
+    ) -> Vec<DVector<f64>> {
+        let tolerated = variations.iter().filter(|v| v.is_tolerated).count();
+        let is_whole =
+            |k: &&Arc<StartColumns>| k.within.len() == tolerated && k.within.iter().all(|c| c.len() == r.len());
+        let known = segment.columns.as_ref().filter(|_| reuse).filter(is_whole);
+        let rank = |i: usize| variations[..i].iter().filter(|v| v.is_tolerated).count();
+        let of = |(i, v): (usize, &Variation)| match known.filter(|_| v.is_tolerated) {
+            Some(known) => known.within[rank(i)].clone(),
+            None => self.column(v, segment, r),
+        };
+        variations.par_iter().enumerate().map(of).collect()
+    }
+
     /// Change of the residual per unit of a variation, from the same start.
     pub fn column(&self, variation: &Variation, segment: &Segment, r: &DVector<f64>) -> DVector<f64> {
         let start = segment.start.fitted_to(&variation.built);
@@ -266,7 +291,7 @@ impl Stage<'_> {
             }
         };
         let columns = all.iter().enumerate().map(column).collect();
-        (Arc::new(StartColumns { freedoms: all.to_vec(), columns }), sizes)
+        (Arc::new(StartColumns { freedoms: all.to_vec(), columns, within: Vec::new() }), sizes)
     }
 
     /// The columns of a segment's start: those of the fit that it comes from, where it has them.
@@ -285,18 +310,28 @@ impl Stage<'_> {
         let all = freedoms(built, &segment.start);
         let r = self.residuals(built, segment);
         let (coarse, base) = self.beside(built, segment, &r);
-        let of_model: Vec<DVector<f64>> = variations.par_iter().map(|v| coarse.column(v, segment, &base)).collect();
+        let of_model = coarse.columns_by(segment, &base, variations, reuse);
         // A flight in which next to nothing of the variations shows has nothing to follow: any columns serve.
         let moved = |(column, v): (&DVector<f64>, &Variation)| v.step * v.step * column.norm_squared();
         let is_untouched = of_model.iter().zip(variations).all(|m| moved(m) < UNTOUCHED * UNTOUCHED * r.len() as f64);
         let known = segment.columns.as_ref().filter(|_| reuse || is_untouched);
         let (of_start, sizes) =
             coarse.start_columns_beside(built, segment, &base, (&all, segment.steps.of(&all)), known);
+        let of_start = remembering(of_start, variations, &of_model);
         let s: Vec<&DVector<f64>> = of_start.columns.iter().collect();
         let p: Vec<&DVector<f64>> = of_model.iter().chain(std::iter::once(&r)).collect();
         let linear = eliminate(&s, &p, &all);
         SegmentLinear { columns: Some(of_start), steps: Steps::new(&all, &sizes), ..linear }
     }
+}
+
+/// Columns of a start that remember those of the numbers with a tolerance.
+fn remembering(known: Arc<StartColumns>, variations: &[Variation], columns: &[DVector<f64>]) -> Arc<StartColumns> {
+    let within = || variations.iter().zip(columns).filter(|(v, _)| v.is_tolerated).map(|(_, c)| c);
+    if within().count() == known.within.len() && within().zip(&known.within).all(|(a, b)| a == b) {
+        return known;
+    }
+    Arc::new(StartColumns { within: within().cloned().collect(), ..(*known).clone() })
 }
 
 /// A cost that no number can hold is beyond all others.

@@ -173,7 +173,7 @@ pub fn locate_in(
         let vary = |(_, effect, step): &(String, Effect, f64)| {
             let mut effects = fit.set.effects();
             effects.push(effect.clone());
-            Ok(Variation { built: plant.build(&effects)?, step: *step })
+            Ok(Variation { built: plant.build(&effects)?, step: *step, is_tolerated: false })
         };
         place.columns.iter().map(vary).collect()
     };

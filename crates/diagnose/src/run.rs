@@ -116,7 +116,7 @@ fn diagnose_in(
     let stage = Stage { tapes: &thinned, pace: Pace { step: own, free: own }, work: &work, doubt: noise::STATED };
     clock.stage("choose the step", 0.03);
     let segments = cut(&built, &thinned, Some(window), |t| t.role == Role::Fit);
-    let discretisation = pace::choose(&stage, &built, &segments, own);
+    let discretisation = pace::choose(&stage, &built, &segments, (own, 0.0));
     let Discretisation { pace, worst } = discretisation;
     watch.step(&format!("steps of {:.3e} s, {:.3e} s in free flight: halving moves {worst:.1e}", pace.step, pace.free));
     let mut stage = Stage { pace, ..stage };

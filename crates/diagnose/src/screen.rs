@@ -122,7 +122,7 @@ pub(crate) fn probes_of(
     let build = |base: &[f64], direction: &[f64], step: f64| -> Option<Variation> {
         let x: Vec<f64> = base.iter().zip(direction).map(|(b, d)| b + step * d).collect();
         let set = fit.set.with(hypothesis, &hypothesis.clamped(&x));
-        plant.build(&set.effects()).ok().map(|built| Variation { built, step })
+        plant.build(&set.effects()).ok().map(|built| Variation { built, step, is_tolerated: false })
     };
     let tuned = |c: &Column| {
         let first = build(&c.base, &c.direction, c.step)?;
@@ -205,7 +205,7 @@ fn products_of(
     let readings = stage.readings(&fit.built, segment).unwrap_or_default();
     let r = stage.residuals_of(&readings, &fit.built, segment);
     let start = stage.columns_of(&fit.built, segment, &r);
-    let g: Vec<DVector<f64>> = active.par_iter().map(|v| stage.column(v, segment, &r)).collect();
+    let g = stage.columns_by(segment, &r, active, true);
     let column = |p: &Probe| match p.is_reading {
         true => stage.column_of(&readings, &p.variation, segment, &r),
         false => stage.column(&p.variation, segment, &r),

@@ -101,7 +101,7 @@ impl Stage<'_> {
             now.segment.steps = Steps::new(&all, &used);
             now.iterations += 1;
             now.shown = columns.iter().filter(|c| c.norm_squared() > 0.0).count();
-            now.segment.columns = Some(Arc::new(StartColumns { freedoms: all.clone(), columns }));
+            now.segment.columns = Some(Arc::new(StartColumns { freedoms: all.clone(), columns, within: Vec::new() }));
             if !self.descend(built, &mut now, &mut r, (&mut damping, effort)) {
                 break;
             }

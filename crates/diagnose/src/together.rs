@@ -100,7 +100,7 @@ impl Gram {
                 true => stage.column_of(&readings, &p.variation, segment, &r),
                 false => stage.column(&p.variation, segment, &r),
             };
-            let g: Vec<DVector<f64>> = active.par_iter().map(|v| stage.column(v, segment, &r)).collect();
+            let g = stage.columns_by(segment, &r, active, true);
             let c: Vec<DVector<f64>> = probes.par_iter().flatten().map(column).collect();
             let starts: Vec<&DVector<f64>> = start.columns.iter().collect();
             let others: Vec<&DVector<f64>> = g.iter().chain(&c).chain(std::iter::once(&r)).collect();
@@ -207,5 +207,76 @@ impl Linear<'_> {
     fn parts(&self, members: &[usize], score: f64) -> Vec<f64> {
         let without = |m: &usize| members.iter().filter(|o| *o != m).copied().collect::<Vec<usize>>();
         members.iter().map(|m| score - self.gram.solve(&without(m)).1).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::hypotheses;
+    use crate::facts::{Facts, JointFact};
+    use crate::screen::Shown;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    /// Viscous friction of three joints.
+    fn three() -> Vec<Hypothesis> {
+        let joint = |k: usize| JointFact { name: format!("j{k}"), coordinate: k, armature: 0.0, largest_command: 0.0 };
+        let facts = Facts { joints: (0..3).map(joint).collect(), duration: 1.0, ..Facts::default() };
+        hypotheses(&facts).into_iter().filter(|h| h.name == "joint-viscous-friction").collect()
+    }
+
+    /// Products by fold of three columns and a residual: the third column is the sum of the others and some noise.
+    fn gram(truth: [f64; 2], noise: f64) -> Gram {
+        let mut dice = ChaCha8Rng::seed_from_u64(7);
+        let mut draw = || (0..12).map(|_| dice.next_u32() as f64 / f64::from(u32::MAX)).sum::<f64>() - 6.0;
+        let mut folds = Vec::new();
+        for _ in 0..FOLDS {
+            let mut k = DMatrix::zeros(4, 4);
+            for _ in 0..40 {
+                let (a, b) = (draw(), draw());
+                let row = [a, b, a + b + 0.3 * draw(), -(truth[0] * a + truth[1] * b) + noise * draw()];
+                k += DMatrix::from_fn(4, 4, |i, j| row[i] * row[j]);
+            }
+            folds.push(k);
+        }
+        Gram { all: folds.iter().sum(), folds, active: 0, first: vec![0, 1, 2, 3] }
+    }
+
+    fn selected(truth: [f64; 2], noise: f64) -> Vec<Vec<usize>> {
+        let all = three();
+        let score = |hypothesis: usize| Score {
+            hypothesis,
+            point: 0,
+            score: 1.0,
+            rank: 1,
+            start: vec![0.0],
+            shown: Shown { errors: Vec::new(), condition: 1.0 },
+        };
+        let scores: Vec<Score> = (0..3).map(score).collect();
+        let taking: Vec<&Score> = scores.iter().collect();
+        let gram = gram(truth, noise);
+        let linear = Linear { all: &all, taking: &taking, gram: &gram, noise: noise * noise * 200.0 };
+        linear.select(3).iter().map(|e| e.members.iter().map(|m| m.0).collect()).collect()
+    }
+
+    #[test]
+    fn two_effects_are_not_taken_for_what_they_have_in_common() {
+        // Alone the third promises most.
+        let gram = gram([1.0, 1.0], 0.1);
+        let alone = [0, 1, 2].map(|m| gram.solve(&[m]).1);
+        assert!(alone[2] > alone[0] && alone[2] > alone[1], "{alone:?}");
+        assert_eq!(selected([1.0, 1.0], 0.1).first(), Some(&vec![0, 1]));
+    }
+
+    #[test]
+    fn one_effect_makes_no_set_and_neither_does_noise() {
+        assert!(selected([1.0, 0.0], 0.1).is_empty());
+        assert!(selected([0.0, 0.0], 1.0).is_empty());
+    }
+
+    #[test]
+    fn friction_that_drives_is_no_member() {
+        assert!(selected([1.0, -1.0], 0.1).iter().all(|set| !set.contains(&1)));
     }
 }

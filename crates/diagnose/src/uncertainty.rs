@@ -87,7 +87,7 @@ fn linearised(stage: &Stage<'_>, found: &Fit, segment: &Segment, variations: &[V
     let finer = Stage { pace: pace::half(stage.pace), ..*stage };
     let moved = finer.residuals(&found.built, segment) - &r;
     let moved = if moved.iter().all(|x| x.is_finite()) { moved } else { DVector::zeros(r.len()) };
-    let columns: Vec<DVector<f64>> = variations.par_iter().map(|v| coarse.column(v, segment, &base)).collect();
+    let columns = coarse.columns_by(segment, &base, variations, true);
     let starts: Vec<&DVector<f64>> = start.columns.iter().collect();
     let others: Vec<&DVector<f64>> = columns.iter().chain([&moved, &r]).collect();
     SegmentLinear { columns: Some(start.clone()), ..eliminate(&starts, &others, &start.freedoms) }

@@ -9,8 +9,8 @@ use diagnose::diagnosis::{Diagnosis, Verdict};
 use diagnose::start::Start;
 use diagnose::synthesise;
 use diagnose::synthetic::as_recorded;
-use planted::{check, check_number, effect, number, root};
-use record::{RecordedRun, RecordingSet, Role, Series};
+use planted::{check, check_number, effect, number, root, swings};
+use record::RecordingSet;
 use scenario::spec::{Effect, ParamValue};
 
 fn vector(x: [f64; 3]) -> ParamValue {
@@ -35,37 +35,6 @@ fn swing(planted: &Effect) -> Diagnosis {
     let at_rest = |built: &diagnose::plant::Built, _: &diagnose::tape::Tape| Start::nominal(built);
     let set = synthesise(with, &swings(), &at_rest, 3).unwrap();
     diagnose::diagnose(scenario, &set, &()).unwrap().0
-}
-
-/// What drives the bar and when it is read; nothing measured yet.
-fn swings() -> RecordingSet {
-    let run = |k: u32| {
-        let phase = 1.7 * f64::from(k);
-        let ticks: Vec<f64> = (0..600).map(|i| f64::from(i) * 0.01).collect();
-        let torque = |t: &f64| {
-            let parts = [(1.1, 2.3, 0.0), (0.8, 5.9, phase), (0.5, 13.0, 2.0 * phase)];
-            let sum: f64 = parts.iter().map(|(a, w, p)| a * (w * t + p).sin()).sum();
-            (1e4 * sum).round() / 1e4
-        };
-        let efforts = ticks.iter().map(torque).collect();
-        let times: Vec<f64> = (0..=1200).map(|i| f64::from(i) * 0.005).collect();
-        let still = vec![0.0; times.len()];
-        let series = vec![
-            Series::new("joint.hinge.effort_command", ticks, efforts),
-            Series::with_quantum("joint.hinge.position", times.clone(), still.clone(), 1e-6),
-            Series::with_quantum("joint.hinge.velocity", times, still, 1e-5),
-        ];
-        let role = if k < 2 { Role::Fit } else { Role::Holdout };
-        RecordedRun { file: format!("run-{k}.csv"), role, note: String::new(), series }
-    };
-    let noise = [("joint.hinge.position".to_owned(), 2e-5), ("joint.hinge.velocity".to_owned(), 1e-3)];
-    RecordingSet {
-        rig: "swing".to_owned(),
-        title: "planted".to_owned(),
-        noise: noise.into(),
-        runs: (0..3).map(run).collect(),
-        ..RecordingSet::default()
-    }
 }
 
 /// The bar tells what was planted in it, and a number of that.
@@ -128,6 +97,9 @@ fn friction_and_springs_of_a_joint() {
         (effect("joint-viscous-friction", hinge, &[("b", number(0.05))]), ("b", 0.05)),
         (effect("joint-coulomb-friction", hinge, &[("c", number(0.1))]), ("c", 0.1)),
         (effect("joint-cable-stiffness", hinge, &cable), ("k", 0.4)),
+        (effect("joint-viscous-asymmetry", hinge, &[("b_plus", number(0.08)), ("b_minus", number(0.03))]), ("b_plus", 0.08)),
+        (effect("joint-quadratic-friction", hinge, &[("b_2", number(0.02))]), ("b_2", 0.02)),
+        (effect("joint-offset", hinge, &[("effort", number(0.05))]), ("effort", 0.05)),
     ];
     cases.iter().for_each(|(planted, number)| check_swing(planted, *number));
 }
