@@ -12,7 +12,7 @@
 
 use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Fit, pseudo_inverse, vary};
-use crate::hypothesis::Hypothesis;
+use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::{Segment, Stage, Variation, eliminate};
 use crate::plant::Plant;
 use crate::screen::{Pilots, Probe, Score, active_size, probes_of, thinned};
@@ -26,6 +26,9 @@ const BEAM: usize = 8;
 const FURTHER: f64 = 0.15;
 /// Hypotheses that take part: the best of a screen by themselves.
 const TAKING_PART: usize = 60;
+/// What more physics beside other physics has to promise above a corrected nominal number, as a share of the most that one effect promises: a number
+/// that is slightly off is likelier.
+const LUXURY: f64 = 0.05;
 /// Folds of the segments: stretches of the recording in their order.
 const FOLDS: usize = 5;
 /// Sets that are handed on.
@@ -75,7 +78,8 @@ pub(crate) fn screen_together(
     let sizes: Vec<f64> = slots.iter().map(|(m, k)| active_size(fit, *m, *k)).collect();
     let active = vary(plant, &fit.set, &slots, &sizes)?;
     let gram = Gram::new(&coarse, fit, &active, &probes);
-    let linear = Linear { all, taking: &taking, gram: &gram, noise: share * fit.noise };
+    let has_findings = fit.set.has_findings();
+    let linear = Linear { all, taking: &taking, gram: &gram, noise: share * fit.noise, has_findings };
     Ok(linear.select(most))
 }
 
@@ -148,9 +152,18 @@ struct Linear<'a> {
     taking: &'a [&'a Score],
     gram: &'a Gram,
     noise: f64,
+    /// Whether there are findings already.
+    has_findings: bool,
 }
 
 impl Linear<'_> {
+    /// What a set promises, less what speaks against it beforehand; `most`: what one effect promises.
+    fn worth(&self, ensemble: &Ensemble, most: f64) -> f64 {
+        let physics = ensemble.members.iter().filter(|(h, _)| self.all[*h].tier == Tier::Exotic).count();
+        let more = physics.saturating_sub(usize::from(!self.has_findings));
+        ensemble.score - LUXURY * most * more as f64
+    }
+
     /// A set with its coordinates, if its effects can have them.
     fn ensemble(&self, members: &[usize]) -> Option<Ensemble> {
         let (x, score) = self.gram.solve(members);
@@ -171,6 +184,7 @@ impl Linear<'_> {
 
     fn select(&self, most: usize) -> Vec<Ensemble> {
         let mut beam: Vec<(Vec<usize>, Ensemble)> = Vec::new();
+        let mut alone = 0.0f64;
         let (cost, nothing) =
             (self.gram.all[(self.gram.all.nrows() - 1, self.gram.all.nrows() - 1)], self.gram.solve(&[]).1);
         for size in 1..=most {
@@ -184,10 +198,12 @@ impl Linear<'_> {
                     sets.push(grown);
                 }
             }
-            let grown: Vec<(Vec<usize>, Ensemble)> =
-                sets.into_par_iter().filter_map(|s| self.ensemble(&s).map(|e| (s, e))).collect();
-            let mut grown = grown;
-            grown.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
+            let of = |set: Vec<usize>| self.ensemble(&set).map(|e| (set, e));
+            let mut grown: Vec<(Vec<usize>, Ensemble)> = sets.into_par_iter().filter_map(of).collect();
+            if size == 1 {
+                alone = grown.iter().map(|g| g.1.score).fold(0.0, f64::max);
+            }
+            grown.sort_by(|a, b| self.worth(&b.1, alone).total_cmp(&self.worth(&a.1, alone)));
             grown.truncate(BEAM);
             let [before, after] = [&beam, &grown].map(|sets| sets.first().map_or(nothing, |s| s.1.score));
             let left = (cost - before - self.noise).max(0.0);
@@ -256,7 +272,8 @@ mod tests {
         let scores: Vec<Score> = (0..3).map(score).collect();
         let taking: Vec<&Score> = scores.iter().collect();
         let gram = gram(truth, noise);
-        let linear = Linear { all: &all, taking: &taking, gram: &gram, noise: noise * noise * 200.0 };
+        let linear =
+            Linear { all: &all, taking: &taking, gram: &gram, noise: noise * noise * 200.0, has_findings: false };
         linear.select(3).iter().map(|e| e.members.iter().map(|m| m.0).collect()).collect()
     }
 

@@ -97,7 +97,10 @@ fn friction_and_springs_of_a_joint() {
         (effect("joint-viscous-friction", hinge, &[("b", number(0.05))]), ("b", 0.05)),
         (effect("joint-coulomb-friction", hinge, &[("c", number(0.1))]), ("c", 0.1)),
         (effect("joint-cable-stiffness", hinge, &cable), ("k", 0.4)),
-        (effect("joint-viscous-asymmetry", hinge, &[("b_plus", number(0.08)), ("b_minus", number(0.03))]), ("b_plus", 0.08)),
+        (
+            effect("joint-viscous-asymmetry", hinge, &[("b_plus", number(0.08)), ("b_minus", number(0.03))]),
+            ("b_plus", 0.08),
+        ),
         (effect("joint-quadratic-friction", hinge, &[("b_2", number(0.02))]), ("b_2", 0.02)),
         (effect("joint-offset", hinge, &[("effort", number(0.05))]), ("effort", 0.05)),
     ];
