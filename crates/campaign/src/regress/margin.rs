@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn the_files_own_word_comes_first_and_its_last_one_counts() {
-        let own = |metric: &str, absolute| Tolerance {
+        let own = |metric: &str, absolute| Margin {
             metric: Some(metric.to_owned()),
             signal: None,
             absolute,

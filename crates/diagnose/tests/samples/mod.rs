@@ -59,7 +59,8 @@ impl Sample<'_> {
         let runs = (0..5).map(run).collect();
         let fit = BeforeAfter { before: 1.1 * free.before, after: free.after - 0.002 };
         Diagnosis {
-            explained_share: None,
+            within_tolerance: Vec::new(),
+        explained_share: None,
             remainder: None,
             format: 1,
             scenario: self.scenario.to_owned(),
