@@ -109,6 +109,15 @@ impl Facts {
     }
 }
 
+impl Facts {
+    /// Without the joints and bodies that effects have brought: a mount's tip has no friction of its own.
+    pub fn of_parts(mut self, nominal: &Self) -> Self {
+        self.joints.retain(|j| nominal.joints.iter().any(|own| own.name == j.name));
+        self.bodies.retain(|b| nominal.bodies.iter().any(|own| own.name == b.name));
+        self
+    }
+}
+
 fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
     let mut all = Vec::new();
     for vehicle in &built.model.vehicles {

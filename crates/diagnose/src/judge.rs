@@ -76,7 +76,8 @@ pub fn judge(
         let restarted = |windows: Vec<Segment>| -> Result<Fit, DiagnoseError> {
             let windowed = fit(stage, plant, set.clone(), windows, effort)?;
             say("windows", &windowed);
-            if !is_last(known) || windowed.rms() >= PLAUSIBLE {
+            let is_plausible = || windowed.rms() < PLAUSIBLE || lost::calc_poor_share(stage, &windowed) <= lost::FEW;
+            if !is_last(known) || !is_plausible() {
                 return Ok(windowed);
             }
             let anew = stage.begun_anew(&built, &windowed.segments, (Effort::JUDGED, lost::POOR_WINDOW));

@@ -20,7 +20,7 @@ const FINER: u32 = 2;
 /// Free flight bears steps as many times longer as this.
 const FREE: f64 = 16.0;
 /// Part of what a model misses that counts like noise: steps need not be finer than that tells.
-pub(crate) const OF_THE_MISS: f64 = 0.3;
+const OF_THE_MISS: f64 = 0.3;
 /// Windows that are looked at.
 const WINDOWS: usize = 24;
 
@@ -33,21 +33,20 @@ pub struct Discretisation {
     pub worst: f64,
 }
 
-/// The coarsest steps whose halves tell the same; `own` is the step below which half and quarter are the last that are tried, s, `miss` the
-/// share of what the model misses that counts like noise: none where starts are only guessed.
-pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], (own, miss): (f64, f64)) -> Discretisation {
+/// The coarsest steps whose halves tell the same; `own` is the step below which half and quarter are the last that are tried, s.
+pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> Discretisation {
     let every = segments.len().div_ceil(WINDOWS).max(1);
     let some: Vec<&Segment> = segments.iter().skip(every / 2).step_by(every).collect();
     let longest = stage.tapes.iter().map(longest_stretch).fold(own, f64::max);
     let finest = own * 0.5f64.powi(FINER as i32);
     let even = |step: f64| Pace { step, free: step };
-    let (found, mut worst) = halved(stage, built, &some, even(longest), (TOLERANCE, finest, miss));
+    let (found, mut worst) = halved(stage, built, &some, even(longest), (TOLERANCE, finest));
     let step = found.step;
     // Samples and commands cut longer ones.
     let mut free = (FREE * step).min(longest.max(step));
     while free > step {
         let pace = Pace { step, free };
-        let moved = calc_difference(stage, built, &some, ([pace, even(step)], miss));
+        let moved = calc_difference(stage, built, &some, [pace, even(step)]);
         if moved <= TOLERANCE {
             worst = worst.max(moved);
             break;
@@ -63,7 +62,7 @@ pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment]) -> Discretisat
     let runs: Vec<&Segment> = runs.iter().collect();
     // The finest is not reached.
     let finest = stage.pace.step * 0.5f64.powi(HALVINGS + 1);
-    let (pace, worst) = halved(stage, built, &runs, stage.pace, (WHOLE_TOLERANCE, finest, OF_THE_MISS));
+    let (pace, worst) = halved(stage, built, &runs, stage.pace, (WHOLE_TOLERANCE, finest));
     Discretisation { pace, worst }
 }
 
@@ -73,12 +72,12 @@ fn halved(
     built: &Built,
     segments: &[&Segment],
     mut pace: Pace,
-    (tolerance, finest, miss): (f64, f64, f64),
+    (tolerance, finest): (f64, f64),
 ) -> (Pace, f64) {
-    let mut worst = calc_worst(stage, built, segments, (pace, miss));
+    let mut worst = calc_worst(stage, built, segments, pace);
     while worst > tolerance && 0.5 * pace.step > finest {
         pace = half(pace);
-        worst = calc_worst(stage, built, segments, (pace, miss));
+        worst = calc_worst(stage, built, segments, pace);
     }
     (pace, worst)
 }
@@ -88,17 +87,17 @@ pub(crate) fn half(pace: Pace) -> Pace {
 }
 
 /// Largest difference from steps of half the length.
-pub fn calc_worst(stage: &Stage<'_>, built: &Built, segments: &[&Segment], (pace, miss): (Pace, f64)) -> f64 {
-    calc_difference(stage, built, segments, ([pace, half(pace)], miss))
+pub fn calc_worst(stage: &Stage<'_>, built: &Built, segments: &[&Segment], pace: Pace) -> f64 {
+    calc_difference(stage, built, segments, [pace, half(pace)])
 }
 
-fn calc_difference(stage: &Stage<'_>, built: &Built, segments: &[&Segment], (paces, miss): ([Pace; 2], f64)) -> f64 {
+fn calc_difference(stage: &Stage<'_>, built: &Built, segments: &[&Segment], paces: [Pace; 2]) -> f64 {
     let of = |segment: &&Segment| {
         let [a, b] = paces.map(|pace| Stage { pace, ..*stage }.residuals(built, segment));
         let count = stage.count(segment).max(1) as f64;
         let missed = (b.norm_squared() / (segment.weight * count)).sqrt();
         let difference = (a - b).norm_squared() / count;
-        if difference.is_finite() { difference.sqrt() / (miss * missed).max(1.0) } else { f64::INFINITY }
+        if difference.is_finite() { difference.sqrt() / (OF_THE_MISS * missed).max(1.0) } else { f64::INFINITY }
     };
     segments.par_iter().map(of).reduce(|| 0.0, f64::max)
 }

@@ -19,7 +19,7 @@ use crate::locate::{Located, locate, locate_in, places};
 use crate::lost;
 use crate::noise::{self, Noise};
 use crate::pace::{self, Discretisation};
-use crate::plant::Plant;
+use crate::plant::{Built, Plant};
 use crate::replay::Pace;
 use crate::search::{Attempt, Limits, WHOLE, errors, search};
 use crate::share;
@@ -116,12 +116,17 @@ fn diagnose_in(
     let stage = Stage { tapes: &thinned, pace: Pace { step: own, free: own }, work: &work, doubt: noise::STATED };
     clock.stage("choose the step", 0.03);
     let segments = cut(&built, &thinned, Some(window), |t| t.role == Role::Fit);
-    let discretisation = pace::choose(&stage, &built, &segments, (own, 0.0));
-    let Discretisation { pace, worst } = discretisation;
-    watch.step(&format!("steps of {:.3e} s, {:.3e} s in free flight: halving moves {worst:.1e}", pace.step, pace.free));
-    let mut stage = Stage { pace, ..stage };
+    let guessed = chosen(&stage, &built, &segments, own);
     clock.stage("fit the starts of the nominal model", 0.05);
-    let nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort::STARTS)?;
+    let mut stage = Stage { pace: guessed.pace, ..stage };
+    let mut nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort::STARTS)?;
+    // A window whose start was guessed badly says little of the steps that it needs.
+    let discretisation = chosen(&stage, &nominal.built, &nominal.segments, own);
+    let pace = discretisation.pace;
+    stage.pace = pace;
+    if pace.step < guessed.pace.step {
+        nominal = fit(&stage, &plant, EffectSet::default(), nominal.segments, Effort::STARTS)?;
+    }
     let noise = Noise::estimate(&Stage { tapes: &tapes, ..stage }, &nominal, set);
     said.extend(noise.words());
     let tapes = noise.applied(&tapes);
@@ -147,8 +152,9 @@ fn diagnose_in(
         whole.rms()
     ));
     let standing = loosened(&stage, &plant, Standing::new(&stage, windows, whole.clone(), rungs))?;
+    let own_parts = Facts::new(&nominal.built, &tapes);
     let candidates = |stage: &Stage<'_>, now: &Fit| {
-        let facts = Facts::new(&now.built, &tapes);
+        let facts = Facts::new(&now.built, &tapes).of_parts(&own_parts);
         let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
         Ok(promising(&locate(stage, &plant, now, joints)?, hypotheses(&facts)))
     };
@@ -192,6 +198,15 @@ fn diagnose_in(
         discretisation,
     };
     Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
+}
+
+/// Steps for a model in some windows, said.
+fn chosen(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> Discretisation {
+    let found = pace::choose(stage, built, segments, own);
+    let (Pace { step, free }, worst) = (found.pace, found.worst);
+    let said = format!("steps of {step:.3e} s, {free:.3e} s in free flight: halving moves {worst:.1e}");
+    stage.work.watch.step(&said);
+    found
 }
 
 /// The same with the initial states of windows that stand out begun anew: where most are followed it is not the model that loses them.

@@ -91,6 +91,8 @@ const UNEXPLAINED: f64 = 0.05;
 const TOLD: usize = 8;
 /// Hypotheses, best first, that are screened over whole runs after windows.
 const SCREENED: usize = 30;
+/// Share of the excess that a refit may leave where other refits are only made of what promises as much.
+const NEXT_TO_NOTHING: f64 = 0.01;
 /// Share of the best fall in the windows from which on a refit goes on to whole runs.
 const NEARLY: f64 = 0.6;
 
@@ -213,7 +215,7 @@ fn refine(stage: &mut Stage<'_>, standing: &Standing) -> bool {
 /// Steps that a model needs in some windows, or the present ones where these are finer.
 fn no_coarser(stage: &Stage<'_>, built: &Built, segments: &[Segment]) -> Pace {
     let now = stage.pace;
-    let found = pace::choose(stage, built, segments, (now.step, pace::OF_THE_MISS)).pace;
+    let found = pace::choose(stage, built, segments, now.step).pace;
     let step = found.step.min(now.step);
     Pace { step, free: found.free.min(now.free).max(step) }
 }
@@ -393,7 +395,9 @@ fn refit_promising(
         // too, promises are compared, which are rough.
         let is_open = ready.iter().all(|r| r.1.is_significant());
         let rival = (RIVAL * brought_by(here, &ready)).min(if is_open { EQUAL * most } else { f64::INFINITY });
-        let is_hopeless = score.score < rival && !h.has_valleys();
+        // Beside a refit that leaves next to nothing no valley is looked for either.
+        let is_rest = ready.iter().any(|r| r.1.excess() < NEXT_TO_NOTHING * here.excess());
+        let is_hopeless = score.score < rival && (!h.has_valleys() || is_rest);
         if !picked.iter().any(|p| std::ptr::eq(*p, score)) || is_hopeless {
             continue;
         }

@@ -60,12 +60,8 @@ mod tests {
 
     #[test]
     fn the_files_own_word_comes_first_and_its_last_one_counts() {
-        let own = |metric: &str, absolute| Margin {
-            metric: Some(metric.to_owned()),
-            signal: None,
-            absolute,
-            relative: 0.0,
-        };
+        let own =
+            |metric: &str, absolute| Margin { metric: Some(metric.to_owned()), signal: None, absolute, relative: 0.0 };
         let list = [own("peak_*", 1.0), own("peak_contact_force_n", 2.0)];
         assert_eq!(of_metric("peak_contact_force_n", &list), (2.0, 0.0));
         assert_eq!(of_metric("peak_hold_force_n", &list), (1.0, 0.0));

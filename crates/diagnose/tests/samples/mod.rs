@@ -60,7 +60,7 @@ impl Sample<'_> {
         let fit = BeforeAfter { before: 1.1 * free.before, after: free.after - 0.002 };
         Diagnosis {
             within_tolerance: Vec::new(),
-        explained_share: None,
+            explained_share: None,
             remainder: None,
             format: 1,
             scenario: self.scenario.to_owned(),
