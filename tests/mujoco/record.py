@@ -19,7 +19,7 @@ RUNS, SECONDS, STEP, TICK = 5, 6.0, 1e-4, 2e-3
 NOISE = {"position": 5e-5, "velocity": 2e-3, "base": 2e-4, "turn": 2e-4, "gyro": 5e-4}
 
 ROBOTS = {
-    "arm": dict(base="fixed", gravity=-9.81, joints=["pan", "lift", "elbow", "wrist"], gain=[60, 90, 50, 12], tool="hand"),
+    "arm": dict(base="fixed", gravity=-9.81, joints=["pan", "lift", "elbow", "wrist"], gain=[20, 90, 50, 12], tool="hand"),
     "floater": dict(base="free", gravity=0.0, joints=["root", "bend", "roll"], gain=[25, 15, 4], tool="tool"),
 }
 CASES = {
