@@ -26,6 +26,8 @@ use std::collections::BTreeMap;
 const SURE: f64 = 0.03;
 /// Factor by which samples may differ from a stated σ. Twice the prior's ±20 % at five standard deviations.
 const FARTHEST: f64 = 2.0;
+/// Factor below which it is no noise that is seen but a coarse encoder at rest.
+const AT_REST: f64 = 0.1;
 /// Share of a channel's samples that may be left out as spikes; where more stand alone, standing alone is how the channel is.
 const SPIKES: f64 = 0.02;
 /// Share of a component's samples from which on it is left out whole rather than sample by sample with the others of its sensor.
@@ -190,7 +192,7 @@ impl Noise {
             });
             let square: f64 = stretches.iter().flatten().map(|r| r * r).sum();
             let found = Found { white: s2.sqrt(), whole: (square / f64::max(samples, 1.0)).sqrt() };
-            let Some(factor) = factor_of(found, is_stated) else { continue };
+            let Some(factor) = factor_of(found, is_stated).filter(|f| *f > AT_REST) else { continue };
             variance += (samples * SPREAD).powi(2) / count as f64;
             factors.insert(channel.clone(), factor);
         }

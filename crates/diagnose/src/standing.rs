@@ -147,8 +147,9 @@ impl Standing {
         let set = windows.set.clone();
         let segments = begun_as(&self.whole.segments, &windows.segments);
         // Where windows had to be shortened, whole runs are far off until the longest windows follow well.
-        let is_far =
-            self.reach <= STEEP && (self.reach == 0.0 || !rungs.is_empty() || lost::calc_share(stage, &windows) > FEW);
+        let is_far = !is_followed && !self.follows()
+            || self.reach <= STEEP
+                && (self.reach == 0.0 || !rungs.is_empty() || lost::calc_share(stage, &windows) > FEW);
         let whole = match is_far {
             true => self.left_far(&windows, segments),
             false => Fit { set: set.clone(), ..self.followed(stage, plant, set.frozen(), &segments)? },

@@ -16,6 +16,8 @@ const FULL: f64 = 0.75;
 const DIGITS: i32 = 7;
 /// C(δ) from which a lattice is believed; sinc²(1/3) = 0.68 for an encoder step written to a third of it.
 const LATTICE: f64 = 0.62;
+/// Stretches that are looked at are begun at so many places, and at the end.
+const PLACES: usize = 8;
 /// Fewest small differences that can show a lattice.
 const FEWEST: usize = 30;
 
@@ -27,14 +29,34 @@ pub(super) fn find_quantum(values: &[f64]) -> f64 {
         return 0.0;
     }
     let written = decimal_step(&thinned);
-    let start = (values.len().saturating_sub(LOOKED_AT)) / 2;
-    let stretch = &values[start..(start + LOOKED_AT).min(values.len())];
+    let stretch = liveliest(values);
     let is_fixed = (written.log10() - written.log10().round()).abs() < 1e-9;
-    let encoder = if written > 0.0 && is_fixed { step_over(stretch, written) } else { encoder_step(stretch) };
+    let encoder = match written > 0.0 && is_fixed {
+        true => step_over(stretch, written).or_else(|| encoder_step(stretch).filter(|_| stands_often(stretch))),
+        false => encoder_step(stretch),
+    };
     match encoder {
         Some(encoder) if encoder > 1.5 * written => encoder.hypot(written),
         _ => written,
     }
+}
+
+/// The stretch in which the values change most often: what rests shows no steps.
+fn liveliest(values: &[f64]) -> &[f64] {
+    let last = values.len().saturating_sub(LOOKED_AT);
+    let stretch = |k: usize| {
+        let start = k * last / PLACES;
+        &values[start..(start + LOOKED_AT).min(values.len())]
+    };
+    let changes = |s: &[f64]| s.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let middle = stretch(PLACES / 2);
+    (0..=PLACES).map(stretch).fold(middle, |best, s| if changes(s) > 2 * changes(best) { s } else { best })
+}
+
+/// Whether neighbours are now and then equal, as those of a coarse encoder are where it turns round; of noise hardly any are.
+fn stands_often(values: &[f64]) -> bool {
+    let equal = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
+    equal * 20 > values.len() && values.len() - equal > FEWEST
 }
 
 /// Step of an encoder whose readings were then rounded to `written`: the highest C(δ) with δ above that rounding.
@@ -141,4 +163,22 @@ fn encoder_step(values: &[f64]) -> Option<f64> {
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, count) = values.fold((0.0, 0_usize), |(sum, count), v| (sum + v, count + 1));
     (count > 0).then(|| sum / count as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pendulum before a coarse encoder, written with six decimals, that comes to rest early.
+    #[test]
+    fn the_step_of_a_coarse_encoder_shows_where_it_moves() {
+        const STEP: f64 = 1.5708e-4;
+        let angle = |i: i32| {
+            3.14 + if i < 5_000 { 0.05 * (-f64::from(i) / 2e3).exp() * (f64::from(i) * 8e-3).cos() } else { 0.0 }
+        };
+        let read = |i: i32| ((angle(i) / STEP).round() * STEP * 1e6).round() * 1e-6;
+        let values: Vec<f64> = (0..23_000).map(read).collect();
+        let found = find_quantum(&values);
+        assert!((found / STEP - 1.0).abs() < 0.01, "{found}");
+    }
 }
