@@ -145,7 +145,7 @@ fn said_of_tolerances(findings: &Findings) -> Option<String> {
         let of = |k: usize| (x[k] - h.coordinates[k].neutral).abs() / h.tolerance[k];
         (0..x.len()).filter(|k| h.tolerance[*k] > 0.0).map(of).fold(0.0, f64::max)
     };
-    let most = members.iter().copied().max_by(|a, b| moved(&a).total_cmp(&moved(&b)))?;
+    let most = members.iter().copied().max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
     Some(format!(
         "{} nominal numbers or vectors were free within the tolerances of the scenario; {} has moved most, by {:.1} standard deviations.",
         members.len(),

@@ -174,7 +174,7 @@ mod tests {
     fn the_step_of_a_coarse_encoder_shows_where_it_moves() {
         const STEP: f64 = 1.5708e-4;
         let angle = |i: i32| {
-            3.14 + if i < 5_000 { 0.05 * (-f64::from(i) / 2e3).exp() * (f64::from(i) * 8e-3).cos() } else { 0.0 }
+            3.1 + if i < 5_000 { 0.05 * (-f64::from(i) / 2e3).exp() * (f64::from(i) * 8e-3).cos() } else { 0.0 }
         };
         let read = |i: i32| ((angle(i) / STEP).round() * STEP * 1e6).round() * 1e-6;
         let values: Vec<f64> = (0..23_000).map(read).collect();
