@@ -1,7 +1,7 @@
 //! How finely replays advance: the diagnosis' own error against the noise of the sensors.
 //!
 //! The step is halved, from the longest stretch that no sample and no command cuts, until a replay and one of half its step differ by less
-//! than a small part of the noise, or of what the model misses there, over every window. Steps of free flight are chosen alike, with those in contact held.
+//! than a small part of the noise (of what the model misses there, where nothing touches) over every window. Steps of free flight are chosen alike, with those in contact held.
 
 use crate::linear::{Segment, Stage};
 use crate::plant::Built;
@@ -92,14 +92,21 @@ pub fn calc_worst(stage: &Stage<'_>, built: &Built, segments: &[&Segment], pace:
 }
 
 fn calc_difference(stage: &Stage<'_>, built: &Built, segments: &[&Segment], paces: [Pace; 2]) -> f64 {
+    // Where parts touch a coarse step changes what happens, not only how exactly.
+    let miss = if touches(built) { 0.0 } else { OF_THE_MISS };
     let of = |segment: &&Segment| {
         let [a, b] = paces.map(|pace| Stage { pace, ..*stage }.residuals(built, segment));
         let count = stage.count(segment).max(1) as f64;
         let missed = (b.norm_squared() / (segment.weight * count)).sqrt();
         let difference = (a - b).norm_squared() / count;
-        if difference.is_finite() { difference.sqrt() / (OF_THE_MISS * missed).max(1.0) } else { f64::INFINITY }
+        if difference.is_finite() { difference.sqrt() / (miss * missed).max(1.0) } else { f64::INFINITY }
     };
     segments.par_iter().map(of).reduce(|| 0.0, f64::max)
+}
+
+/// Whether any parts of a model may touch.
+pub(crate) fn touches(built: &Built) -> bool {
+    !built.model.scene.pairs().is_empty()
 }
 
 /// The longest stretch between two instants at which a sensor reads or a command changes, s; gaps in the data left out.

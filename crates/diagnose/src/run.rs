@@ -121,7 +121,10 @@ fn diagnose_in(
     let mut stage = Stage { pace: guessed.pace, ..stage };
     let mut nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort::STARTS)?;
     // A window whose start was guessed badly says little of the steps that it needs.
-    let discretisation = chosen(&stage, &nominal.built, &nominal.segments, own);
+    let discretisation = match pace::touches(&nominal.built) {
+        true => guessed,
+        false => chosen(&stage, &nominal.built, &nominal.segments, own),
+    };
     let pace = discretisation.pace;
     stage.pace = pace;
     if pace.step < guessed.pace.step {
