@@ -5,7 +5,7 @@ import json
 import pathlib
 import sys
 
-KEYS = {"joint-coulomb-friction": "c", "joint-viscous-friction": "b", "payload": "mass", "joint-spring": "k", "actuator-delay": "delay"}
+KEYS = {"joint-coulomb-friction": "c", "joint-viscous-friction": "b", "payload": "mass", "joint-cable-stiffness": "k", "actuator-delay": "delay"}
 # MuJoCo's dry friction is a regularised constraint, ours a bristle: a share of the mismatch, not all of it.
 SHARE = 0.95
 

@@ -27,7 +27,7 @@ CASES = {
     "dry": [("joint-coulomb-friction", 1, 0.5)],
     "viscous": [("joint-viscous-friction", 2, 0.4)],
     "payload": [("payload", None, 0.35)],
-    "spring": [("joint-spring", 1, 2.5)],
+    "spring": [("joint-cable-stiffness", 1, 2.5)],
     "late": [("actuator-delay", 0, 0.006)],
     "dry-payload": [("joint-coulomb-friction", 1, 0.5), ("payload", None, 0.35)],
 }
@@ -54,7 +54,7 @@ def model_of(name, robot, effects):
             joint.frictionloss = size
         elif effect == "joint-viscous-friction":
             joint.damping = [size, 0, 0] if np.ndim(joint.damping) else size
-        elif effect == "joint-spring":
+        elif effect == "joint-cable-stiffness":
             joint.stiffness = [size, 0, 0] if np.ndim(joint.stiffness) else size
     return spec.compile()
 
