@@ -122,6 +122,9 @@ pub struct Found {
     pub params: BTreeMap<String, ParamValue>,
     /// One standard error of each parameter that was fitted, in the parameter's shape.
     pub std_err: BTreeMap<String, StdErr>,
+    /// Whether it acts on a joint that slides, so that its units are those of forces instead of torques.
+    #[serde(default)]
+    pub slides: bool,
     /// What else explains the same data nearly as well, nearest first.
     #[serde(default)]
     pub rivals: Vec<Rival>,

@@ -40,7 +40,7 @@ fn effects(diagnosis: &Diagnosis) -> Vec<Vec<String>> {
     for found in &diagnosis.effects {
         for (i, (name, value)) in found.params.iter().enumerate() {
             let (effect, place) = if i == 0 { (found.name.clone(), found.place.clone()) } else { Default::default() };
-            let unit = crate::vocabulary::unit(&found.name, name, false);
+            let unit = crate::vocabulary::unit(&found.name, name, found.slides);
             let value = format!("{} {unit}", value_words(value, found.std_err.get(name)));
             rows.push(vec![effect, place, name.clone(), value]);
         }

@@ -175,9 +175,19 @@ fn effects(findings: &Findings, tolerated: bool) -> Vec<Found> {
                 }
             }
         }
-        Found { name: effect.name, place: effect.place, params: effect.params, std_err, rivals: rivals(findings, h) }
+        let slides = slides(&fit.built, &effect.place);
+        let rivals = rivals(findings, h);
+        Found { name: effect.name, place: effect.place, params: effect.params, std_err, slides, rivals }
     };
     fit.set.members.iter().enumerate().filter(|(_, (h, _))| h.is_tolerated() == tolerated).map(of).collect()
+}
+
+/// Whether a place is a joint that slides.
+fn slides(built: &crate::plant::Built, place: &str) -> bool {
+    let Some(name) = place.strip_prefix("joint:") else { return false };
+    let name = name.rsplit('/').next().unwrap_or(name);
+    let mut joints = built.model.vehicles.iter().flat_map(|v| &v.tree.joints);
+    joints.any(|j| j.name == name && j.kind == multibody::JointKind::Prismatic)
 }
 
 /// Hypotheses whose refit came near the chosen one's in the round in which it was chosen.
@@ -278,7 +288,12 @@ fn identifiability(findings: &Findings) -> Vec<Identifiable> {
         let one = |(parameter, std_err): &(String, f64)| Identifiable {
             effect: a.name.clone(),
             place: a.place.clone(),
-            unit: unit(&a.name, parameter.split('[').next().unwrap_or(parameter), false).to_owned(),
+            unit: unit(
+                &a.name,
+                parameter.split('[').next().unwrap_or(parameter),
+                slides(&findings.nominal.built, &a.place),
+            )
+            .to_owned(),
             parameter: parameter.clone(),
             std_err: *std_err,
             condition: a.shown.condition,
@@ -344,7 +359,7 @@ fn parameters(findings: &Findings) -> Vec<Parameter> {
                 effect: h.name.to_owned(),
                 place: h.place.clone(),
                 name: key.to_owned(),
-                unit: unit(h.name, key.split('[').next().unwrap_or(key), false).to_owned(),
+                unit: unit(h.name, key.split('[').next().unwrap_or(key), slides(&fit.built, &h.place)).to_owned(),
                 value,
                 nominal: before,
                 std_err,

@@ -157,7 +157,7 @@ pub fn effect_words(found: &Found) -> String {
 /// "b = 0.9012 ± 0.0011 N m s/rad, …".
 pub fn parameter_words(found: &Found) -> String {
     let one = |(name, value): (&String, &ParamValue)| {
-        let unit = unit(&found.name, name, false);
+        let unit = unit(&found.name, name, found.slides);
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         format!("{name} = {}{unit}", value_words(value, found.std_err.get(name)))
     };

@@ -85,6 +85,7 @@ pub fn found(name: &str, place: &str, params: &[(&str, f64, f64)], rivals: &[(&s
         place: place.to_owned(),
         params: params.iter().map(|p| (p.0.to_owned(), ParamValue::Number(p.1))).collect(),
         std_err: params.iter().map(|p| (p.0.to_owned(), StdErr::one(p.2))).collect(),
+        slides: false,
         rivals: rivals.iter().map(rival).collect(),
     }
 }
