@@ -10,12 +10,13 @@
 use crate::error::DiagnoseError;
 use crate::fit::{Fit, pseudo_inverse, scaled, vary};
 use crate::hypothesis::{Column, Hypothesis, Scale, ScreenPoint};
-use crate::linear::{Segment, Stage, Variation, eliminate};
+use crate::linear::{Segment, Stage, StartColumns, Variation, eliminate};
 use crate::plant::{Built, Plant};
 use crate::start::{Freedom, freedoms};
 use crate::stretches::spokesmen;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// What a screen point promises.
 #[derive(Clone, Debug)]
@@ -46,11 +47,11 @@ pub struct Shown {
 
 /// A column of a screen point.
 pub(crate) struct Probe {
-    pub variation: Variation,
+    variation: Variation,
     /// Steps of the memory that it brings, where its starts are to be freed.
     memory: Option<Vec<f64>>,
     /// Whether it concerns nothing but how readings are read.
-    pub is_reading: bool,
+    is_reading: bool,
 }
 
 /// Root mean square (units of noise) that a column's step shall have on the pilot segments.
@@ -85,9 +86,7 @@ pub(crate) fn thinned(fit: &Fit) -> (Fit, f64) {
 }
 
 fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -> Result<Vec<Score>, DiagnoseError> {
-    let slots = fit.set.slots();
-    let sizes: Vec<f64> = slots.iter().map(|(m, k)| active_size(fit, *m, *k)).collect();
-    let active = vary(plant, &fit.set, &slots, &sizes)?;
+    let active = vary_active(plant, fit)?;
     let points: Vec<(usize, usize)> =
         all.iter().enumerate().flat_map(|(h, hyp)| (0..hyp.screens.len()).map(move |p| (h, p))).collect();
     let pilots = Pilots::new(stage, fit);
@@ -103,8 +102,15 @@ fn screen_all(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -
     Ok(scores)
 }
 
+/// A model for each fitted number of a set, moved by a step that suits it.
+pub(crate) fn vary_active(plant: &Plant, fit: &Fit) -> Result<Vec<Variation>, DiagnoseError> {
+    let slots = fit.set.slots();
+    let sizes: Vec<f64> = slots.iter().map(|(m, k)| active_size(fit, *m, *k)).collect();
+    vary(plant, &fit.set, &slots, &sizes)
+}
+
 /// A step of an active coordinate: a tenth of its standard error moves the whole residual by a tenth of one unit; a hundredfold of it is still linear.
-pub(crate) fn active_size(fit: &Fit, m: usize, k: usize) -> f64 {
+fn active_size(fit: &Fit, m: usize, k: usize) -> f64 {
     let at = fit.set.slots().iter().position(|s| *s == (m, k)).unwrap_or(0);
     let error = fit.covariance.get((at, at)).map_or(0.0, |v| v.max(0.0).sqrt());
     let coordinate = &fit.set.members[m].0.coordinates[k];
@@ -202,24 +208,50 @@ fn products_of(
     active: &[Variation],
     probes: &[Vec<Probe>],
 ) -> Vec<DMatrix<f64>> {
-    let readings = stage.readings(&fit.built, segment).unwrap_or_default();
-    let r = stage.residuals_of(&readings, &fit.built, segment);
-    let start = stage.columns_of(&fit.built, segment, &r);
-    let g = stage.columns_by(segment, &r, active, true);
-    let column = |p: &Probe| match p.is_reading {
-        true => stage.column_of(&readings, &p.variation, segment, &r),
-        false => stage.column(&p.variation, segment, &r),
-    };
+    let screened = Screened::new(stage, fit, segment, active);
     let of_point = |probes: &Vec<Probe>| {
-        let columns: Vec<DVector<f64>> = probes.iter().map(column).collect();
-        let own: Vec<DVector<f64>> =
-            probes.iter().flat_map(|p| own_columns(stage, segment, &start.freedoms, p).0).collect();
-        let starts: Vec<&DVector<f64>> = start.columns.iter().chain(&own).collect();
-        let others: Vec<&DVector<f64>> = g.iter().chain(&columns).chain(std::iter::once(&r)).collect();
-        let names = vec![Freedom::Memory(0); starts.len()];
-        eliminate(&starts, &others, &names).reduced
+        let columns: Vec<DVector<f64>> = probes.iter().map(|p| screened.column(p)).collect();
+        let of_memory = |p: &Probe| own_columns(stage, segment, &screened.start.freedoms, p).0;
+        let own: Vec<DVector<f64>> = probes.iter().flat_map(of_memory).collect();
+        screened.reduced(&columns, &own)
     };
     probes.par_iter().map(of_point).collect()
+}
+
+/// A segment about which hypotheses are made linear.
+pub(crate) struct Screened<'a> {
+    stage: &'a Stage<'a>,
+    segment: &'a Segment,
+    readings: Vec<scenario::measure::Reading>,
+    r: DVector<f64>,
+    start: Arc<StartColumns>,
+    /// Columns of the active numbers.
+    active: Vec<DVector<f64>>,
+}
+
+impl<'a> Screened<'a> {
+    pub(crate) fn new(stage: &'a Stage<'a>, fit: &Fit, segment: &'a Segment, active: &[Variation]) -> Self {
+        let readings = stage.readings(&fit.built, segment).unwrap_or_default();
+        let r = stage.residuals_of(&readings, &fit.built, segment);
+        let start = stage.columns_of(&fit.built, segment, &r);
+        let active = stage.columns_by(segment, &r, active, true);
+        Self { stage, segment, readings, r, start, active }
+    }
+
+    /// Change of the residual per unit of a probe's step.
+    pub(crate) fn column(&self, probe: &Probe) -> DVector<f64> {
+        match probe.is_reading {
+            true => self.stage.column_of(&self.readings, &probe.variation, self.segment, &self.r),
+            false => self.stage.column(&probe.variation, self.segment, &self.r),
+        }
+    }
+
+    /// Products of (active numbers, columns, residual), the start and what a memory begins with eliminated.
+    pub(crate) fn reduced(&self, columns: &[DVector<f64>], memory: &[DVector<f64>]) -> DMatrix<f64> {
+        let starts: Vec<&DVector<f64>> = self.start.columns.iter().chain(memory).collect();
+        let others: Vec<&DVector<f64>> = self.active.iter().chain(columns).chain(std::iter::once(&self.r)).collect();
+        eliminate(&starts, &others, &vec![Freedom::Memory(0); starts.len()]).reduced
+    }
 }
 
 /// Columns of the memory that a hypothesis brings, and the steps over which they were taken.

@@ -8,6 +8,7 @@ use crate::diagnosis::{
 use crate::evidence::{
     self, Evidence, Heat, HeatRow, Hypothesis, Identifiable, Level, Parameter, Remark, Status, bin_edges, mean_squares,
 };
+use crate::hypothesis::Hypothesis as Member;
 use crate::linear::{Segment, Stage};
 use crate::run::Findings;
 use crate::vocabulary::unit;
@@ -24,7 +25,8 @@ pub(crate) fn tell(
     scenario: &str,
     folder: &Path,
 ) -> (Diagnosis, Evidence) {
-    let effects = if findings.verdict == Verdict::Unknown { Vec::new() } else { effects(findings, false) };
+    let found =
+        if findings.verdict == Verdict::Unknown { Vec::new() } else { effects(findings, |h| !h.is_tolerated()) };
     let features = find_features(stage, &findings.nominal);
     let recording = folder.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let diagnosis = Diagnosis {
@@ -33,8 +35,8 @@ pub(crate) fn tell(
         recording,
         verdict: findings.verdict,
         located: located(findings, stage, &features),
-        effects,
-        within_tolerance: effects_within(findings),
+        effects: found,
+        within_tolerance: effects(findings, Member::is_tolerated),
         error: errors(findings, stage),
         explained_share: (findings.verdict.is_found() && findings.found.set.has_findings())
             .then(|| findings.explained.clone()),
@@ -133,15 +135,10 @@ fn covariance_of(findings: &Findings, member: usize) -> DMatrix<f64> {
     })
 }
 
-/// Nominal numbers that were corrected within their tolerances.
-fn effects_within(findings: &Findings) -> Vec<Found> {
-    effects(findings, true)
-}
-
 /// How many they are, and which has moved most.
 fn said_of_tolerances(findings: &Findings) -> Option<String> {
     let members: Vec<_> = findings.found.set.members.iter().filter(|(h, _)| h.is_tolerated()).collect();
-    let moved = |(h, x): &&(crate::hypothesis::Hypothesis, Vec<f64>)| {
+    let moved = |(h, x): &&(Member, Vec<f64>)| {
         let of = |k: usize| (x[k] - h.coordinates[k].neutral).abs() / h.tolerance[k];
         (0..x.len()).filter(|k| h.tolerance[*k] > 0.0).map(of).fold(0.0, f64::max)
     };
@@ -154,10 +151,10 @@ fn said_of_tolerances(findings: &Findings) -> Option<String> {
     ))
 }
 
-/// The members of the set that are findings, or those within tolerances.
-fn effects(findings: &Findings, tolerated: bool) -> Vec<Found> {
+/// Some members of the set, as they are told.
+fn effects(findings: &Findings, wanted: impl Fn(&Member) -> bool) -> Vec<Found> {
     let fit = &findings.found;
-    let of = |(m, (h, x)): (usize, &(crate::hypothesis::Hypothesis, Vec<f64>))| {
+    let of = |(m, (h, x)): (usize, &(Member, Vec<f64>))| {
         let effect = h.effect(x);
         let held = |key: &str| fit.set.held.iter().any(|(n, k)| *n == m && h.coordinates[*k].key == key);
         let mut std_err: BTreeMap<String, StdErr> = BTreeMap::new();
@@ -179,7 +176,7 @@ fn effects(findings: &Findings, tolerated: bool) -> Vec<Found> {
         let rivals = rivals(findings, h);
         Found { name: effect.name, place: effect.place, params: effect.params, std_err, slides, rivals }
     };
-    fit.set.members.iter().enumerate().filter(|(_, (h, _))| h.is_tolerated() == tolerated).map(of).collect()
+    fit.set.members.iter().enumerate().filter(|(_, (h, _))| wanted(h)).map(of).collect()
 }
 
 /// Whether a place is a joint that slides.
@@ -191,7 +188,7 @@ fn slides(built: &crate::plant::Built, place: &str) -> bool {
 }
 
 /// Hypotheses whose refit came near the chosen one's in the round in which it was chosen.
-fn rivals(findings: &Findings, chosen: &crate::hypothesis::Hypothesis) -> Vec<Rival> {
+fn rivals(findings: &Findings, chosen: &Member) -> Vec<Rival> {
     let is_chosen = |a: &crate::search::Attempt| a.kept && a.name == chosen.name && a.place == chosen.place;
     let Some(own) = findings.attempts.iter().find(|a| is_chosen(a)) else { return Vec::new() };
     let Some(gain) = own.gain else { return Vec::new() };

@@ -11,12 +11,11 @@
 //! can turn out to be nothing beside two others. A set whose amplitudes no effect can have (friction that drives) is none.
 
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Fit, pseudo_inverse, vary};
+use crate::fit::{EffectSet, Fit, pseudo_inverse};
 use crate::hypothesis::{Hypothesis, Tier};
-use crate::linear::{Segment, Stage, Variation, eliminate};
+use crate::linear::{Segment, Stage, Variation};
 use crate::plant::Plant;
-use crate::screen::{Pilots, Probe, Score, active_size, probes_of, thinned};
-use crate::start::Freedom;
+use crate::screen::{Pilots, Probe, Score, Screened, probes_of, thinned, vary_active};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -74,9 +73,7 @@ pub(crate) fn screen_together(
         probes_of(&coarse, plant, (fit, &pilots), (h, &h.screens[score.point]))
     };
     let probes: Vec<Vec<Probe>> = taking.par_iter().map(probes_at).collect();
-    let slots = fit.set.slots();
-    let sizes: Vec<f64> = slots.iter().map(|(m, k)| active_size(fit, *m, *k)).collect();
-    let active = vary(plant, &fit.set, &slots, &sizes)?;
+    let active = vary_active(plant, fit)?;
     let gram = Gram::new(&coarse, fit, &active, &probes);
     let has_findings = fit.set.has_findings();
     let linear = Linear { all, taking: &taking, gram: &gram, noise: share * fit.noise, has_findings };
@@ -97,18 +94,9 @@ impl Gram {
         let mut first = vec![active.len()];
         probes.iter().for_each(|p| first.push(first[first.len() - 1] + p.len()));
         let of = |segment: &Segment| {
-            let readings = stage.readings(&fit.built, segment).unwrap_or_default();
-            let r = stage.residuals_of(&readings, &fit.built, segment);
-            let start = stage.columns_of(&fit.built, segment, &r);
-            let column = |p: &Probe| match p.is_reading {
-                true => stage.column_of(&readings, &p.variation, segment, &r),
-                false => stage.column(&p.variation, segment, &r),
-            };
-            let g = stage.columns_by(segment, &r, active, true);
-            let c: Vec<DVector<f64>> = probes.par_iter().flatten().map(column).collect();
-            let starts: Vec<&DVector<f64>> = start.columns.iter().collect();
-            let others: Vec<&DVector<f64>> = g.iter().chain(&c).chain(std::iter::once(&r)).collect();
-            eliminate(&starts, &others, &vec![Freedom::Memory(0); starts.len()]).reduced
+            let screened = Screened::new(stage, fit, segment, active);
+            let columns: Vec<DVector<f64>> = probes.par_iter().flatten().map(|p| screened.column(p)).collect();
+            screened.reduced(&columns, &[])
         };
         let parts: Vec<DMatrix<f64>> = fit.segments.par_iter().map(of).collect();
         let side = first[probes.len()] + 1;

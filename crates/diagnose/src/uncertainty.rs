@@ -9,11 +9,11 @@
 //! - step: what steps of half the length would move the numbers by, −A⁻¹ G⊥ᵀ(r_half − r), added as a variance.
 
 use crate::error::DiagnoseError;
-use crate::fit::{Fit, pseudo_inverse, vary};
+use crate::fit::{Fit, pseudo_inverse};
 use crate::linear::{Segment, SegmentLinear, Stage, Variation, eliminate};
 use crate::pace;
 use crate::plant::Plant;
-use crate::screen::active_size;
+use crate::screen::vary_active;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -44,8 +44,7 @@ pub(crate) fn estimate(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<
     if n == 0 {
         return Ok(Uncertainty::default());
     }
-    let sizes: Vec<f64> = slots.iter().map(|(m, k)| active_size(found, *m, *k)).collect();
-    let variations = vary(plant, &found.set, &slots, &sizes)?;
+    let variations = vary_active(plant, found)?;
     let linear: Vec<SegmentLinear> =
         found.segments.par_iter().map(|s| linearised(stage, found, s, &variations)).collect();
     let mut a = DMatrix::zeros(n + 1, n + 1);
