@@ -108,41 +108,10 @@ fn diagnose_in(
     refuse_foreign(&inspection)?;
     let mut plant = Plant::new(scenario);
     let (tapes, built) = load(&mut plant, set)?;
-    let (tapes, mut said) = noise::clean(set, tapes);
-    let window = window_of(set, &tapes, parts);
-    let own = plant.scenario.integrator.step_s;
-    let thin = |tapes: &[Tape]| tapes.iter().map(|t| t.thinned(ENOUGH)).collect::<Vec<Tape>>();
-    let thinned = thin(&tapes);
-    let stage = Stage { tapes: &thinned, pace: Pace { step: own, free: own }, work: &work, doubt: noise::STATED };
-    clock.stage("choose the step", 0.03);
-    let segments = cut(&built, &thinned, Some(window), |t| t.role == Role::Fit);
-    let guessed = chosen(&stage, &built, &segments, own);
-    clock.stage("fit the starts of the nominal model", 0.05);
-    let mut stage = Stage { pace: guessed.pace, ..stage };
-    let mut nominal = fit(&stage, &plant, EffectSet::default(), segments, Effort::STARTS)?;
-    // A window whose start was guessed badly says little of the steps that it needs.
-    let discretisation = match pace::touches(&nominal.built) {
-        true => guessed,
-        false => chosen(&stage, &nominal.built, &nominal.segments, own),
-    };
+    let Begun { tapes, thinned, doubt, window, discretisation, nominal, said } =
+        begin(&plant, (&built, tapes), set, parts, &mut clock)?;
     let pace = discretisation.pace;
-    stage.pace = pace;
-    if pace.step < guessed.pace.step {
-        nominal = fit(&stage, &plant, EffectSet::default(), nominal.segments, Effort::STARTS)?;
-    }
-    let noise = Noise::estimate(&Stage { tapes: &tapes, ..stage }, &nominal, set);
-    said.extend(noise.words());
-    let tapes = noise.applied(&tapes);
-    let thinned = thin(&tapes);
-    stage = Stage { tapes: &thinned, doubt: noise.doubt, ..stage };
-    let nominal = match noise.factors.is_empty() {
-        true => nominal,
-        // Guesses and weights were those of another noise.
-        false => {
-            let segments = cut(&nominal.built, &thinned, Some(window), |t| t.role == Role::Fit);
-            fit(&stage, &plant, EffectSet::default(), segments, Effort::STARTS)?
-        }
-    };
+    let mut stage = Stage { tapes: &thinned, pace, work: &work, doubt };
     let nominal = doubted(&stage, &plant, nominal)?;
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
@@ -201,6 +170,66 @@ fn diagnose_in(
         discretisation,
     };
     Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
+}
+
+/// What there is before anything is searched for.
+struct Begun {
+    /// The runs with the noise that was found.
+    tapes: Vec<Tape>,
+    /// The same with as many samples as a search needs.
+    thinned: Vec<Tape>,
+    /// Cost per scalar that is not told from a wrong noise level.
+    doubt: f64,
+    /// In which predictions are judged, s.
+    window: f64,
+    discretisation: Discretisation,
+    /// The nominal model, its starts fitted.
+    nominal: Fit,
+    /// What was done to the recording, in words.
+    said: Vec<String>,
+}
+
+/// Cleans the recording, chooses the steps, fits the starts of the nominal model and estimates the noise by what it leaves.
+fn begin(
+    plant: &Plant,
+    (built, tapes): (&Built, Vec<Tape>),
+    set: &RecordingSet,
+    parts: f64,
+    clock: &mut Clock<'_>,
+) -> Result<Begun, DiagnoseError> {
+    let (tapes, mut said) = noise::clean(set, tapes);
+    let window = window_of(set, &tapes, parts);
+    let own = plant.scenario.integrator.step_s;
+    let thin = |tapes: &[Tape]| tapes.iter().map(|t| t.thinned(ENOUGH)).collect::<Vec<Tape>>();
+    let thinned = thin(&tapes);
+    let pace = Pace { step: own, free: own };
+    let stage = Stage { tapes: &thinned, pace, work: clock.work, doubt: noise::STATED };
+    clock.stage("choose the step", 0.03);
+    let segments = cut(built, &thinned, Some(window), |t| t.role == Role::Fit);
+    let guessed = chosen(&stage, built, &segments, own);
+    clock.stage("fit the starts of the nominal model", 0.05);
+    let mut stage = Stage { pace: guessed.pace, ..stage };
+    let mut nominal = fit(&stage, plant, EffectSet::default(), segments, Effort::STARTS)?;
+    // A window whose start was guessed badly says little of the steps that it needs.
+    let discretisation = match pace::touches(&nominal.built) {
+        true => guessed,
+        false => chosen(&stage, &nominal.built, &nominal.segments, own),
+    };
+    stage.pace = discretisation.pace;
+    if discretisation.pace.step < guessed.pace.step {
+        nominal = fit(&stage, plant, EffectSet::default(), nominal.segments, Effort::STARTS)?;
+    }
+    let noise = Noise::estimate(&Stage { tapes: &tapes, ..stage }, &nominal, set);
+    said.extend(noise.words());
+    let tapes = noise.applied(&tapes);
+    let thinned = thin(&tapes);
+    if !noise.factors.is_empty() {
+        // Guesses and weights were those of another noise.
+        let stage = Stage { tapes: &thinned, doubt: noise.doubt, ..stage };
+        let segments = cut(&nominal.built, &thinned, Some(window), |t| t.role == Role::Fit);
+        nominal = fit(&stage, plant, EffectSet::default(), segments, Effort::STARTS)?;
+    }
+    Ok(Begun { tapes, thinned, doubt: noise.doubt, window, discretisation, nominal, said })
 }
 
 /// Steps for a model in some windows, said.
