@@ -1,7 +1,7 @@
 //! Prediction errors: every run, free and in windows, under the nominal and the corrected model, each with its own starts.
 
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Effort, Fit, fit};
+use crate::fit::{Effort, Fit, fit};
 use crate::linear::{Segment, Stage};
 use crate::lost;
 use crate::plant::Plant;
@@ -48,7 +48,7 @@ pub struct Scalar {
 /// Estimates the starts of every run under both models, from those that the search has found, and judges all samples by them; `follows`: whole
 /// runs follow the corrected one.
 ///
-/// `few` has the samples by which the nominal model's starts are estimated where it is known to be wrong, `all` those by which both are judged.
+/// `few` has the samples by which starts are estimated, enough for that, `all` those by which both models are judged.
 pub fn judge(
     (few, all): (&Stage<'_>, &Stage<'_>),
     plant: &Plant,
@@ -61,7 +61,7 @@ pub fn judge(
     };
     let is_last = |known: &Fit| known.set.members.len() == found.set.members.len();
     let of = |known: &Fit| -> Result<(Prediction, Prediction), DiagnoseError> {
-        let stage = if is_last(known) { all } else { few };
+        let stage = &Stage { pace: if is_last(known) { all.pace } else { few.pace }, ..*few };
         let set = known.set.frozen();
         let built = plant.build(&set.effects())?;
         // What a wrong model is off by takes no more exact starts.
@@ -70,7 +70,7 @@ pub fn judge(
             |what: &str, fit: &Fit| stage.work.watch.step(&format!("{model} model, {what}: error {:.3}", fit.rms()));
         let effort = if is_last(known) { Effort::JUDGED } else { Effort { iterations: GLANCES, ..Effort::JUDGED } };
         let mut windows = cut(&built, stage.tapes, Some(window), |_| true);
-        begin_from(&mut windows, &known.segments);
+        begin_from(stage, &mut windows, &known.segments);
         let first = |windows: &[Segment]| joined(windows, stage.tapes);
         let of_runs = if is_last(known) { found } else { nominal[1] };
         let restarted = |windows: Vec<Segment>| -> Result<Fit, DiagnoseError> {
@@ -88,7 +88,7 @@ pub fn judge(
             let windowed = restarted(windows)?;
             let mut runs = first(&windowed.segments);
             if !is_last(known) {
-                begin_from(&mut runs, &of_runs.segments);
+                begin_from(stage, &mut runs, &of_runs.segments);
             }
             say("windows, begun anew", &windowed);
             let whole = follow_with(stage, plant, set.clone(), &runs, effort)?;
@@ -96,10 +96,7 @@ pub fn judge(
             return Ok((predict(windowed), predict(whole)));
         }
         let mut runs = first(&windows);
-        begin_from(&mut runs, &of_runs.segments);
-        if is_last(known) {
-            runs = begun_with(few, all, plant, &set, runs)?;
-        }
+        begin_from(stage, &mut runs, &of_runs.segments);
         let mut whole = follow_with(stage, plant, set.clone(), &runs, effort)?;
         say("whole runs", &whole);
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
@@ -135,30 +132,14 @@ const GLANCES: usize = 2;
 /// Root mean square over whole runs up to which starts are doubted before the model is.
 const PLAUSIBLE: f64 = 8.0;
 
-/// Runs whose starts are known have these from all samples; those of the others are estimated from few first.
-fn begun_with(
-    few: &Stage<'_>,
-    all: &Stage<'_>,
-    plant: &Plant,
-    set: &EffectSet,
-    runs: Vec<Segment>,
-) -> Result<Vec<Segment>, DiagnoseError> {
-    let (known, open): (Vec<Segment>, Vec<Segment>) = runs.into_iter().partition(|r| r.columns.is_some());
-    let few = Stage { pace: all.pace, ..*few };
-    let begun = follow_with(&few, plant, set.clone(), &open, Effort::JUDGED)?;
-    let afresh = |s: Segment| Segment { columns: None, ..s };
-    let mut runs: Vec<Segment> = known.into_iter().chain(begun.segments.into_iter().map(afresh)).collect();
-    runs.sort_by_key(|r| r.run);
-    Ok(runs)
-}
-
-/// Takes the starts of segments that are known already, and their derivatives.
-fn begin_from(segments: &mut [Segment], known: &[Segment]) {
+/// Takes the starts of segments that are known already, and their derivatives where these are of as many samples.
+fn begin_from(stage: &Stage<'_>, segments: &mut [Segment], known: &[Segment]) {
     for segment in segments {
         let begins_alike = |k: &&Segment| k.run == segment.run && (k.span.from - segment.span.from).abs() < 1e-9;
         let Some(known) = known.iter().find(begins_alike) else { continue };
         segment.start.clone_from(&known.start);
-        if (known.span.to - segment.span.to).abs() < 1e-9 && known.weight == segment.weight {
+        let of_few = known.columns.as_ref().is_some_and(|k| k.columns.iter().all(|c| c.len() == stage.count(segment)));
+        if (known.span.to - segment.span.to).abs() < 1e-9 && known.weight == segment.weight && of_few {
             segment.columns.clone_from(&known.columns);
         }
     }

@@ -122,8 +122,11 @@ pub struct Stage<'a> {
 impl Stage<'_> {
     /// The same with longer steps: derivatives and promises bear what predictions do not.
     pub fn coarser(&self) -> Self {
-        let Pace { step, free } = self.pace;
-        Self { pace: Pace { step: COARSER * step, free: COARSER * free }, ..*self }
+        let Pace { step, free, .. } = self.pace;
+        let step = COARSER * step;
+        // Long steps in flight are as long as they may be already.
+        let free = if free > self.pace.step { free.max(step) } else { step };
+        Self { pace: Pace { step, free, ..self.pace }, ..*self }
     }
 
     /// Where derivatives are taken, and the residuals there; `r` are those of a prediction.

@@ -11,14 +11,18 @@ use rayon::prelude::*;
 
 /// Difference (rms over a window, units of noise) that a halved step may make.
 pub const TOLERANCE: f64 = 0.05;
+/// The same by long steps in free flight: a model that is varied may ask for shorter ones, and what it differs by is told in tenths of the noise.
+const IN_FLIGHT: f64 = 1e-3;
+/// Flights of at least so many steps are told by Runge–Kutta from one long step, which is cheaper than short ones by the midpoint rule.
+const LONG: f64 = 3.0;
 /// The same over a whole run.
 const WHOLE_TOLERANCE: f64 = 0.1;
 /// Halvings that whole runs may ask for.
 const HALVINGS: i32 = 3;
 /// Halvings of the scenario's own step that are tried beyond it.
 const FINER: u32 = 2;
-/// Free flight bears steps as many times longer as this.
-const FREE: f64 = 16.0;
+/// Share of a window up to which steps of free flight are tried.
+const FREE: f64 = 0.125;
 /// Part of what a model misses that counts like noise: steps need not be finer than that tells.
 const OF_THE_MISS: f64 = 0.3;
 /// Windows that are looked at.
@@ -39,31 +43,58 @@ pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) 
     let some: Vec<&Segment> = segments.iter().skip(every / 2).step_by(every).collect();
     let longest = stage.tapes.iter().map(longest_stretch).fold(own, f64::max);
     let finest = own * 0.5f64.powi(FINER as i32);
-    let even = |step: f64| Pace { step, free: step };
-    let (found, mut worst) = halved(stage, built, &some, even(longest), (TOLERANCE, finest));
+    let (found, mut worst) = halved(stage, built, &some, Pace::even(longest), (TOLERANCE, finest));
     let step = found.step;
-    // Samples and commands cut longer ones.
-    let mut free = (FREE * step).min(longest.max(step));
+    let longest = some.iter().map(|s| FREE * (s.span.to - s.span.from)).fold(0.0, f64::max);
+    // Commands cut longer ones.
+    let mut free = longest.min(stage.tapes.iter().map(|t| usual_stretch(&t.ticks)).fold(0.0, f64::max)).max(step);
     while free > step {
-        let pace = Pace { step, free };
-        let moved = calc_difference(stage, built, &some, [pace, even(step)]);
-        if moved <= TOLERANCE {
+        let pace = Pace { free, ..Pace::even(step) };
+        let moved = calc_difference(stage, built, &some, [pace, Pace::even(step)]);
+        if moved <= IN_FLIGHT {
             worst = worst.max(moved);
             break;
         }
         free *= 0.5;
     }
-    Discretisation { pace: Pace { step, free: free.max(step) }, worst }
+    let mut pace = Pace { free: free.max(step), ..Pace::even(step) };
+    if built.model.is_smooth() && pace.free < LONG * step {
+        let midpoint = Pace { midpoint: true, ..pace };
+        pace.midpoint = calc_difference(stage, built, &some, [midpoint, pace]) <= IN_FLIGHT;
+    }
+    Discretisation { pace, worst }
 }
 
-/// Steps at which whole runs, which carry errors on for longer than windows do, are as exact: the present ones, halved as often as that
-/// takes; and what halving them once more would move, units of noise.
+/// Steps at which whole runs, which carry errors on for longer than windows do, are as exact: the present ones, in contact and in flight each
+/// halved as often as that takes; and what halving them once more would move, units of noise.
 pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment]) -> Discretisation {
     let runs: Vec<&Segment> = runs.iter().collect();
-    // The finest is not reached.
-    let finest = stage.pace.step * 0.5f64.powi(HALVINGS + 1);
-    let (pace, worst) = halved(stage, built, &runs, stage.pace, (WHOLE_TOLERANCE, finest));
-    Discretisation { pace, worst }
+    let mut pace = stage.pace;
+    let finest = half_times(pace, HALVINGS);
+    loop {
+        let Pace { step, free, .. } = pace;
+        // Where flights have no steps of their own, both are one.
+        let finer = [
+            Pace { step: 0.5 * step, free: if free > step { free } else { 0.5 * step }, ..pace },
+            Pace { step: step.min(0.5 * free), free: 0.5 * free, ..pace },
+        ];
+        let may = [step > finest.step, free > finest.free];
+        let moved = finer.map(|finer| calc_difference(stage, built, &runs, [pace, finer]));
+        let worst = moved[0].max(moved[1]);
+        if worst > WHOLE_TOLERANCE && pace.midpoint {
+            pace.midpoint = false;
+            continue;
+        }
+        let is_due = |k: usize| may[k] && moved[k] > 0.5 * WHOLE_TOLERANCE;
+        if worst <= WHOLE_TOLERANCE || !is_due(0) && !is_due(1) {
+            return Discretisation { pace, worst };
+        }
+        pace = Pace {
+            step: if is_due(0) { finer[0].step } else { step }.min(if is_due(1) { finer[1].step } else { step }),
+            free: if is_due(1) { finer[1].free } else { finer[0].free },
+            ..pace
+        };
+    }
 }
 
 /// Steps halved until halving them once more moves nothing by more than a tolerance, or reaches the finest; and what that moves.
@@ -83,7 +114,12 @@ fn halved(
 }
 
 pub(crate) fn half(pace: Pace) -> Pace {
-    Pace { step: 0.5 * pace.step, free: 0.5 * pace.free }
+    half_times(pace, 1)
+}
+
+fn half_times(pace: Pace, times: i32) -> Pace {
+    let share = 0.5f64.powi(times);
+    Pace { step: share * pace.step, free: share * pace.free, ..pace }
 }
 
 /// Largest difference from steps of half the length.
@@ -113,7 +149,13 @@ pub(crate) fn touches(built: &Built) -> bool {
 fn longest_stretch(tape: &Tape) -> f64 {
     let mut stops: Vec<f64> = tape.events.iter().map(|e| e.time).chain(tape.ticks.iter().copied()).collect();
     stops.sort_by(f64::total_cmp);
+    let stretch = usual_stretch(&stops);
+    if stretch.is_finite() { stretch } else { 0.0 }
+}
+
+/// The longest of nine tenths of the stretches between ascending instants, s; without end where there are none.
+fn usual_stretch(stops: &[f64]) -> f64 {
     let mut stretches: Vec<f64> = stops.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 1e-9).collect();
     stretches.sort_by(f64::total_cmp);
-    stretches.get(stretches.len() * 9 / 10).copied().unwrap_or(0.0)
+    stretches.get(stretches.len() * 9 / 10).copied().unwrap_or(f64::INFINITY)
 }

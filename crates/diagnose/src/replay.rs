@@ -10,7 +10,7 @@ use crate::reading::Value;
 use crate::start::Start;
 use crate::tape::{Event, Tape};
 use scenario::measure::{Gauge, Reading as Measured, SensorModel};
-use sim::World;
+use sim::{Integrator, World};
 use spatial::Vec3;
 
 /// A stretch of a run, replayed from a start of its own.
@@ -29,6 +29,28 @@ pub struct Pace {
     pub step: f64,
     /// Longest step in free flight, s.
     pub free: f64,
+    /// Whether models without corners are advanced by the midpoint rule, at half the cost.
+    pub midpoint: bool,
+}
+
+/// Largest phase (rad) of what effects and mounts bring with them in a step in contact, and in free flight: whatever was chosen for the nominal
+/// model, a model that is faster by itself is followed.
+const RESOLVED: [f64; 2] = [1.0, 0.3];
+
+impl Pace {
+    /// One step for all.
+    pub fn even(step: f64) -> Self {
+        Self { step, free: step, midpoint: false }
+    }
+
+    /// Steps that also resolve what a model swings by itself; mounts in flight see to themselves.
+    fn resolving(self, built: &Built) -> Self {
+        let mounts = built.mounts.iter().map(|m| (m.stiffness / m.mass(&built.model)).sqrt());
+        let effects = built.model.fastest_effect();
+        let at_most = |share: f64, rate: f64| if rate > 0.0 { share / rate } else { f64::INFINITY };
+        let step = self.step.min(at_most(RESOLVED[0], mounts.fold(effects, f64::max)));
+        Self { step, free: self.free.min(at_most(RESOLVED[1], effects)).max(step), ..self }
+    }
 }
 
 /// Two instants closer than this are one, s.
@@ -105,9 +127,26 @@ fn measure(
         let gauge = &sensors[event.reading as usize].0;
         gauge.rests_untouched() || may_hold && gauge.is_behind_mount()
     };
+    // What nothing touches reads nothing, and behind a mount that is held always the same: no step has to end there.
+    let still = |gauge: &Gauge, world: &World| match gauge.is_behind_mount() {
+        true => gauge.read(world),
+        false => Measured::Vector(Vec3::zeros()),
+    };
+    let is_smooth = |event: &Event| rests(event) || !sensors[event.reading as usize].0.reads_contact();
     // Until when nothing is known to touch; and the next instant at which something else than a contact is read.
     let (mut flown, mut next) = (f64::NEG_INFINITY, 0);
-    for (at, (i, event)) in events.iter().enumerate() {
+    let mut at = 0;
+    while let Some((i, event)) = events.get(at) {
+        let (gauge, _) = &sensors[event.reading as usize];
+        let passed = replay.glide(&events[at..], is_smooth, |k, world| {
+            let (i, event) = &events[at + k];
+            let (gauge, _) = &sensors[event.reading as usize];
+            look(*i, event, &if rests(event) { still(gauge, world) } else { gauge.read(world) });
+        })?;
+        if passed > 0 {
+            at += passed;
+            continue;
+        }
         if rests(event) && event.time > flown {
             next = next.max(at);
             while events.get(next).is_some_and(|(_, e)| rests(e)) {
@@ -116,12 +155,9 @@ fn measure(
             let end = events.get(next).or(events.last()).map_or(event.time, |(_, e)| e.time);
             flown = replay.fly_to(end)?;
         }
-        let (gauge, _) = &sensors[event.reading as usize];
-        // What nothing touches reads nothing, and behind a mount that is held always the same: no step has to end there.
+        at += 1;
         if rests(event) && event.time <= flown {
-            let still =
-                if gauge.is_behind_mount() { gauge.read(&replay.world) } else { Measured::Vector(Vec3::zeros()) };
-            look(*i, event, &still);
+            look(*i, event, &still(gauge, &replay.world));
             continue;
         }
         replay.advance_to(event.time)?;
@@ -172,23 +208,80 @@ struct Replay<'a> {
     feed: Feed<'a>,
     pace: Pace,
     mounts: Mounts,
+    /// Length of the next step past several readings, s; and when these are read.
+    reach: f64,
+    instants: Vec<f64>,
 }
 
 impl<'a> Replay<'a> {
     fn new(built: &Built, tape: &'a Tape, start: &Start, from: f64, pace: Pace) -> Self {
+        let pace = pace.resolving(built);
         let mut world = start.world(built, tape.index);
+        if pace.midpoint && built.model.is_smooth() {
+            world = world.with_integrator(Integrator::ImplicitMidpoint);
+        }
         let feed = Feed::new(tape, from);
         hear_the_past(built, tape, from, &mut world);
         feed.apply(&mut world);
         start.set_memory(&mut world);
         let mut mounts = Mounts::new(&built.model, &built.mounts, tape, pace);
         mounts.after += from;
-        Self { tape, world, feed, pace, mounts }
+        Self { tape, world, feed, pace, mounts, reach: pace.free, instants: Vec::new() }
+    }
+
+    /// Flies in one long step past as many of the next events as it reaches, and shows the world at each of them; how many these were: none
+    /// where a step has to end at the first, or something touches.
+    fn glide(
+        &mut self,
+        events: &[(usize, Event)],
+        is_smooth: impl Fn(&Event) -> bool,
+        mut look: impl FnMut(usize, &World),
+    ) -> Result<usize, DiagnoseError> {
+        let Self { tape, world, feed, pace, mounts, reach, instants } = self;
+        let Some((_, first)) = events.first() else { return Ok(0) };
+        let now = world.state().time;
+        let swings = !mounts.rests.is_empty() && now < mounts.after;
+        if pace.free <= pace.step || swings || first.time <= now + SAME || world.touches().next().is_some() {
+            return Ok(0);
+        }
+        if feed.next_tick(tape) <= now + SAME {
+            feed.turn(tape, now);
+            feed.apply(world);
+        }
+        // At an instant at which a command changes sensors read what was before; steps end where sensors read or commands change, so that what
+        // comes after a flight is cut alike whichever way it was flown.
+        let tick = feed.next_tick(tape);
+        let far = (now + *reach).min(tick);
+        let count = events.iter().take_while(|(_, e)| e.time <= far && is_smooth(e)).count();
+        let end = match events.get(count) {
+            Some((_, next)) if far == tick && next.time > tick => tick,
+            _ => events[..count].last().map_or(now, |(_, e)| e.time),
+        };
+        instants.clear();
+        instants.extend(events[..count].iter().map(|(_, e)| e.time).filter(|t| *t < end - SAME));
+        instants.dedup_by(|b, a| *b - *a <= SAME);
+        *reach = (2.0 * *reach).min(pace.free);
+        if instants.is_empty() {
+            return Ok(0);
+        }
+        let mut shown = 0;
+        let flown = world.advance_past(end - now, (&mounts.rests, instants), |k, world| {
+            while shown < count && events[shown].1.time <= instants[k] + SAME {
+                look(shown, world);
+                shown += 1;
+            }
+        });
+        if !flown.map_err(|what| gone(tape, what))? {
+            *reach = (0.25 * *reach).max(pace.step);
+            return Ok(0);
+        }
+        (shown..count).for_each(|k| look(k, world));
+        Ok(count)
     }
 
     /// Advances towards an instant as far as nothing touches, commands changed at their ticks; until when nothing did.
     fn fly_to(&mut self, time: f64) -> Result<f64, DiagnoseError> {
-        let Self { tape, world, feed, pace, mounts } = self;
+        let Self { tape, world, feed, pace, mounts, .. } = self;
         if pace.free <= pace.step || time - world.state().time <= SAME {
             return Ok(f64::NEG_INFINITY);
         }
@@ -210,7 +303,7 @@ impl<'a> Replay<'a> {
 
     /// Advances to an instant, commands changed at their ticks; whether anything touched on the way.
     fn advance_to(&mut self, time: f64) -> Result<bool, DiagnoseError> {
-        let Self { tape, world, feed, pace, mounts } = self;
+        let Self { tape, world, feed, pace, mounts, .. } = self;
         let mut has_touched = false;
         while feed.next_tick(tape) < time - SAME {
             has_touched |= advance_to(world, feed.next_tick(tape), *pace, mounts).map_err(|what| gone(tape, what))?;
@@ -365,7 +458,9 @@ mod tests {
     fn a_flight_that_no_force_sensor_cuts_reads_the_same() {
         let (built, tape, start) = docking();
         let span = Span { from: 0.0, to: 0.7 };
-        let read = |free: f64| readings(&built, &tape, &start, span, Pace { step: 2.5e-4, free }).expect("it runs");
+        let read = |free: f64| {
+            readings(&built, &tape, &start, span, Pace { step: 2.5e-4, ..Pace::even(free) }).expect("it runs")
+        };
         let (short, long) = (read(2.5e-4), read(16e-3));
         let norm = |m: &Measured| if let Measured::Vector(v) = m { v.norm() } else { f64::NAN };
         let forces = |all: &[Measured]| {
@@ -380,6 +475,52 @@ mod tests {
     }
 
     #[test]
+    fn a_long_step_in_flight_passes_what_is_read() {
+        let (built, tape, start) = docking();
+        let span = Span { from: 0.0, to: 0.7 };
+        let pace = Pace { step: 2.5e-4, ..Pace::even(16e-3) };
+        let events = events_in(&tape, span, &sensors_of(&built, &tape).expect("all are measured"));
+        let mut replay = Replay::new(&built, &tape, &start, span.from, pace);
+        replay.advance_to(1e-3).expect("it runs");
+        let ahead: Vec<(usize, Event)> = events.into_iter().filter(|(_, e)| e.time > 1e-3).collect();
+        let mut places = Vec::new();
+        let passed = replay.glide(&ahead, |_| true, |k, world| places.push((ahead[k].1.time, world.frame(0).pos)));
+        // 16 ms of a sensor at 2 kHz, and of one at 250 Hz.
+        assert_eq!((passed.expect("it runs"), places.len()), (36, 36));
+        let steps = replay.world.state().work.steps;
+        for (time, seen) in places {
+            let mut short = Replay::new(&built, &tape, &start, span.from, Pace::even(2.5e-4));
+            short.advance_to(time).expect("it runs");
+            let off = (short.world.frame(0).pos - seen).norm();
+            assert!(off < 1e-12 && (short.world.state().time - time).abs() < 1e-12, "{off:e} m at {time}");
+        }
+        // What stands before it leaves room for no long step.
+        let near = touches_in(&built, &tape, &start, span, Pace::even(2.5e-4))[0].from - 2e-3;
+        replay.advance_to(near).expect("it runs");
+        let ahead: Vec<(usize, Event)> = ahead.into_iter().filter(|(_, e)| e.time > near).collect();
+        replay.reach = pace.free;
+        assert_eq!(replay.glide(&ahead, |_| true, |_, _| ()).expect("it runs"), 0);
+        assert!(steps <= 3, "{steps} steps");
+    }
+
+    #[test]
+    fn what_swings_by_itself_is_resolved_whatever_the_steps() {
+        let (nominal, ..) = docking();
+        let mut plant = Plant::new(scenario::load(FILE.as_ref(), &[]).expect("the scenario is in the repository"));
+        plant.channels = nominal.sensors.iter().map(|(channel, ..)| channel.clone()).collect();
+        let effect = |name: &str, place: &str, numbers: &[(&str, f64)]| {
+            let params = numbers.iter().map(|(k, x)| ((*k).to_owned(), ParamValue::Number(*x))).collect();
+            plant.build(&[Effect { name: name.to_owned(), place: place.to_owned(), params }]).expect("it builds")
+        };
+        let mount = effect("mount-compliance", "contact:probe/drogue", &[("k", 8e5), ("d", 260.0), ("m", 0.8)]);
+        let pace = Pace { step: 4e-3, ..Pace::even(0.1) };
+        assert_eq!(pace.resolving(&nominal), pace);
+        // ω = 1000 rad/s: in contact a phase of one at most; in flight it is held.
+        let found = pace.resolving(&mount);
+        assert!((found.step - 1e-3).abs() < 1e-9 && found.free == pace.free, "{found:?}");
+    }
+
+    #[test]
     fn a_flight_with_a_mount_at_rest_reads_the_same() {
         let (nominal, tape, start) = docking();
         let mut plant = Plant::new(scenario::load(FILE.as_ref(), &[]).expect("the scenario is in the repository"));
@@ -390,8 +531,9 @@ mod tests {
         let built = plant.build(&[Effect { name: "mount-compliance".to_owned(), place, params }]).expect("it builds");
         let span = Span { from: 0.0, to: 0.7 };
         let fill = |start: &Start| Start { q: vec![0.0; 3], v: vec![0.0; 3], ..start.clone() };
-        let read =
-            |free: f64| readings(&built, &tape, &fill(&start), span, Pace { step: 2.5e-4, free }).expect("it runs");
+        let read = |free: f64| {
+            readings(&built, &tape, &fill(&start), span, Pace { step: 2.5e-4, ..Pace::even(free) }).expect("it runs")
+        };
         let (short, long) = (read(2.5e-4), read(16e-3));
         let (mut off, mut peak) = (0.0_f64, 0.0_f64);
         for ((a, b), event) in short.iter().zip(&long).zip(&tape.events) {
@@ -411,9 +553,9 @@ mod tests {
     fn touches_are_told_by_the_stretches_between_samples() {
         let (built, tape, start) = docking();
         let span = Span { from: 0.0, to: 0.7 };
-        let touches = touches_in(&built, &tape, &start, span, Pace { step: 2.5e-4, free: 16e-3 });
+        let touches = touches_in(&built, &tape, &start, span, Pace { step: 2.5e-4, ..Pace::even(16e-3) });
         assert!(touches.len() == 1 && touches[0].from > 0.1 && touches[0].to < 0.7, "{touches:?}");
         let before = Span { from: 0.0, to: touches[0].from };
-        assert!(touches_in(&built, &tape, &start, before, Pace { step: 2.5e-4, free: 2.5e-4 }).is_empty());
+        assert!(touches_in(&built, &tape, &start, before, Pace::even(2.5e-4)).is_empty());
     }
 }

@@ -202,7 +202,7 @@ fn begin(
     let own = plant.scenario.integrator.step_s;
     let thin = |tapes: &[Tape]| tapes.iter().map(|t| t.thinned(ENOUGH)).collect::<Vec<Tape>>();
     let thinned = thin(&tapes);
-    let pace = Pace { step: own, free: own };
+    let pace = Pace::even(own);
     let stage = Stage { tapes: &thinned, pace, work: clock.work, doubt: noise::STATED };
     clock.stage("choose the step", 0.03);
     let segments = cut(built, &thinned, Some(window), |t| t.role == Role::Fit);
@@ -235,7 +235,7 @@ fn begin(
 /// Steps for a model in some windows, said.
 fn chosen(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> Discretisation {
     let found = pace::choose(stage, built, segments, own);
-    let (Pace { step, free }, worst) = (found.pace, found.worst);
+    let (Pace { step, free, .. }, worst) = (found.pace, found.worst);
     let said = format!("steps of {step:.3e} s, {free:.3e} s in free flight: halving moves {worst:.1e}");
     stage.work.watch.step(&said);
     found
@@ -287,7 +287,7 @@ fn suited(stage: &Stage<'_>, standing: &Standing, chosen: Discretisation) -> Dis
         return Discretisation { pace: stage.pace, ..chosen };
     }
     let found = pace::refine(stage, &judged.built, &judged.segments);
-    let Pace { step, free } = found.pace;
+    let Pace { step, free, .. } = found.pace;
     stage
         .work
         .watch

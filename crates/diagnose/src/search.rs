@@ -206,7 +206,7 @@ fn refine(stage: &mut Stage<'_>, standing: &Standing) -> bool {
     let is_finer = stage.pace != before;
     if is_finer {
         let moves = worst.map_or(String::new(), |w| format!(": halving moves whole runs by {w:.2e}"));
-        let Pace { step, free } = stage.pace;
+        let Pace { step, free, .. } = stage.pace;
         stage.work.watch.step(&format!("steps of {step:.3e} s, {free:.3e} s in free flight{moves}"));
     }
     is_finer
@@ -217,7 +217,7 @@ fn no_coarser(stage: &Stage<'_>, built: &Built, segments: &[Segment]) -> Pace {
     let now = stage.pace;
     let found = pace::choose(stage, built, segments, now.step).pace;
     let step = found.step.min(now.step);
-    Pace { step, free: found.free.min(now.free).max(step) }
+    Pace { step, free: found.free.min(now.free).max(step), midpoint: found.midpoint && now.midpoint }
 }
 
 pub(crate) fn errors(now: &Standing) -> String {

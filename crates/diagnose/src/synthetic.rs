@@ -44,9 +44,9 @@ pub fn synthesise(
     let (tapes, built) = load(&mut plant, like)?;
     let own = plant.scenario.integrator.step_s;
     let work = Work::new(&());
-    let stage = Stage { tapes: &tapes, pace: Pace { step: own, free: own }, work: &work, doubt: noise::STATED };
+    let stage = Stage { tapes: &tapes, pace: Pace::even(own), work: &work, doubt: noise::STATED };
     let found = pace::choose(&stage, &built, &cut(&built, &tapes, None, |_| true), own).pace;
-    let pace = Pace { step: found.step / FINER, free: found.free / FINER };
+    let pace = Pace { step: found.step / FINER, free: found.free / FINER, ..found };
     let of_run = |(recorded, tape): (&RecordedRun, &Tape)| -> Result<RecordedRun, DiagnoseError> {
         let mut values: Vec<Vec<Value>> = tape.readings.iter().map(|r| r.values.clone()).collect();
         let span = Span { from: tape.span.0, to: tape.span.1 };

@@ -22,6 +22,14 @@ pub struct CommandTape {
     pub efforts: Vec<f64>,
 }
 
+impl CommandTape {
+    /// The instants at which it changes, s.
+    fn changes(&self) -> impl Iterator<Item = f64> + '_ {
+        let changes = |i: &usize| i.checked_sub(1).is_none_or(|before| self.efforts[*i] != self.efforts[before]);
+        (0..self.times.len()).filter(changes).map(|i| self.times[i])
+    }
+}
+
 /// One sample of one reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
@@ -121,7 +129,7 @@ impl Tape {
             events.extend(samples.map(|(i, t)| Event { time: *t, reading: r as u32, sample: i as u32 }));
         }
         events.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.reading.cmp(&b.reading)));
-        let mut ticks: Vec<f64> = commands.iter().flat_map(|c| c.times.iter().copied()).collect();
+        let mut ticks: Vec<f64> = commands.iter().flat_map(CommandTape::changes).collect();
         ticks.sort_by(f64::total_cmp);
         ticks.dedup();
         let span = (events.first().map_or(0.0, |e| e.time), events.last().map_or(0.0, |e| e.time));

@@ -243,6 +243,16 @@ fn update_reach(model: &Model, ws: &mut Workspace, h: f64) {
     }
 }
 
+/// Whether any pair may touch within `h` s, however its bodies turn.
+pub(crate) fn is_near(model: &Model, ws: &mut Workspace, h: f64) -> bool {
+    if model.scene.pairs().is_empty() {
+        return false;
+    }
+    update_reach(model, ws, h);
+    ws.detector.detect(&model.scene, &ws.frames, &ws.reach, &mut ws.points);
+    !ws.points.is_empty()
+}
+
 /// Finds the touching points at the present frames and gives each its bristle.
 pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: f64) {
     ws.touches.clear();

@@ -4,7 +4,7 @@
 //! in W) the last. A `Model` never changes after [`Model::build`] and is shared by all threads.
 
 use crate::actuator::{Actuator, ActuatorKind, Coordinate};
-use crate::effect::{Effect, EffectKind, Effects, Series};
+use crate::effect::{self, Effect, EffectKind, Effects, Series};
 use crate::environment::Environment;
 use crate::error::ModelError;
 use crate::mechanism::{Mechanism, MechanismKind};
@@ -232,6 +232,21 @@ pub struct Model {
 }
 
 impl Model {
+    /// The fastest of what effects bring with them, rad/s: steps much longer than its inverse do not see it.
+    pub fn fastest_effect(&self) -> f64 {
+        self.effects.list.iter().map(|e| e.kind.own_rate()).fold(0.0, f64::max)
+    }
+
+    /// Whether no law in it has a corner but the joints' stops: nothing may touch, no dry friction, no gear, no mechanism.
+    pub fn is_smooth(&self) -> bool {
+        let has_gear = self.effects.list.iter().any(|e| matches!(e.kind, EffectKind::Series(_)));
+        self.scene.pairs().is_empty()
+            && self.mechanisms.is_empty()
+            && !has_gear
+            && !effect::has_dry(self)
+            && self.coordinates.iter().all(|c| c.dry.is_none())
+    }
+
     /// Numbers and checks a world.
     pub fn build(spec: ModelSpec) -> Result<Self, ModelError> {
         Self::build_like(None, spec)

@@ -5,6 +5,10 @@
 //! Every stage takes the base twist from its momentum, so every stage conserves, and so does the sum. Rotation vectors
 //! follow θ̇ = ω − ½ θ×ω + 1/12 θ×(θ×ω). Deflections are kept in the plane of the step's start. Those of the comparison laws
 //! have rates; what becomes of a bristle's is the business of [`crate::rk4_bristle`].
+//!
+//! Within a step the same stages tell the state at t + θ h to third order (Hairer, Nørsett and Wanner 1993, II.6):
+//!
+//!   y(θ) = y + h Σ bᵢ(θ) kᵢ,    b₁ = θ − 3θ²/2 + 2θ³/3,  b₂ = b₃ = θ² − 2θ³/3,  b₄ = −θ²/2 + 2θ³/3
 
 use crate::actuator::CoordinatePoint;
 use crate::books;
@@ -34,6 +38,30 @@ pub(crate) struct Stages {
     slots: Vec<ContactMemory>,
     tracks: Vec<Track>,
     node: usize,
+    /// Instants within the step that are asked for; the first `asked` of them.
+    between: Vec<Between>,
+    asked: usize,
+}
+
+/// The world at an instant within a step.
+#[derive(Clone, Debug, Default)]
+struct Between {
+    /// Share of the step.
+    at: f64,
+    sum: Rates,
+    state: State,
+}
+
+impl Between {
+    /// Weight of a stage, for a stretch of the step that is as long as its own share.
+    fn weight(&self, stage: usize) -> f64 {
+        let x = self.at;
+        match stage {
+            0 => 1.0 - x * (1.5 - 2.0 / 3.0 * x),
+            3 => x * (2.0 / 3.0 * x - 0.5),
+            _ => x * (1.0 - 2.0 / 3.0 * x),
+        }
+    }
 }
 
 /// A rate of everything that is integrated.
@@ -96,6 +124,23 @@ impl Stages {
         stages.sum.reset(model, 0);
         stages
     }
+
+    /// Asks for the world at some shares of the next step.
+    pub fn ask(&mut self, model: &Model, shares: impl Iterator<Item = f64>) {
+        self.asked = 0;
+        for at in shares {
+            if self.asked == self.between.len() {
+                self.between.push(Between { state: State::new(model), ..Between::default() });
+            }
+            self.between[self.asked].at = at;
+            self.asked += 1;
+        }
+    }
+
+    /// The state at the instant of that number, to be exchanged for another one.
+    pub fn between(&mut self, index: usize) -> &mut State {
+        &mut self.between[index].state
+    }
 }
 
 /// Times of the stages in steps, and their weights.
@@ -126,10 +171,21 @@ pub(crate) fn step(model: &Model, state: &mut State, ws: &mut Workspace) {
             rk.sum.reset(model, rk.slots.len());
             rk.tracks.clear();
             rk.tracks.resize(rk.slots.len(), Track::default());
+            let slots = rk.slots.len();
+            rk.between[..rk.asked].iter_mut().for_each(|b| b.sum.reset(model, slots));
         }
         rk.node = index;
         calc_rates(model, state, ws, &mut rk);
         rk.sum.add_scaled(&rk.rate, weight);
+        for between in &mut rk.between[..rk.asked] {
+            let weight = between.weight(index);
+            between.sum.add_scaled(&rk.rate, weight);
+        }
+    }
+    for between in &mut rk.between[..rk.asked] {
+        let from = From { start: &rk.start, rate: &between.sum, slots: &rk.slots };
+        place(model, &mut between.state, &mut ws.displacement, &from, between.at * h);
+        between.state.commands.clone_from(&rk.start.commands);
     }
     let from = From { start: &rk.start, rate: &rk.sum, slots: &rk.slots };
     place(model, state, &mut ws.displacement, &from, h);

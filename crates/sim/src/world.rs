@@ -1,5 +1,6 @@
 //! A model and its state, advancing.
 
+use crate::contacts;
 use crate::drive;
 use crate::effect;
 use crate::error::StepError;
@@ -24,6 +25,7 @@ pub struct World {
     state: State,
     ws: Workspace,
     is_fresh: bool,
+    integrator: Integrator,
 }
 
 /// A touching point, as the last step left it.
@@ -75,7 +77,8 @@ impl World {
         state.effects.resize(model.effects.n_memory(), 0.0);
         let is_blank = !state.is_settled && effect::is_blank(&model, &state);
         let ws = Workspace::new(&model);
-        let mut world = Self { model, state, ws, is_fresh: false };
+        let integrator = model.integrator;
+        let mut world = Self { model, state, ws, is_fresh: false, integrator };
         world.refresh();
         if is_blank && world.ws.parts.has_parts {
             effect::rest_parts(&world.model, &mut world.state, &world.ws);
@@ -89,6 +92,12 @@ impl World {
     /// nothing that moves is any different. For replays that nobody asks what became of the energy.
     pub fn without_books(mut self) -> Self {
         self.ws.keeps_books = false;
+        self
+    }
+
+    /// The same world advanced by another integrator than its model asks for.
+    pub fn with_integrator(mut self, integrator: Integrator) -> Self {
+        self.integrator = integrator;
         self
     }
 
@@ -124,8 +133,7 @@ impl World {
             let now = self.state.time;
             self.state.works.resize(self.model.n_works(), 0.0);
             drive::place(&self.model, &mut self.state, now);
-            self.ws.update_positions(&self.model, &self.state);
-            self.ws.update_velocities(&self.model, &self.state);
+            self.update();
             self.is_fresh = true;
         }
     }
@@ -169,7 +177,7 @@ impl World {
         let mut left = h;
         // What is left of a stretch in which dry friction turns, and is made in short steps.
         let mut turning = 0.0;
-        let may_turn = effect::may_turn(&self.model);
+        let may_turn = self.may_turn();
         loop {
             effect::accept(&self.model, &mut self.state);
             self.settle_effects();
@@ -214,13 +222,62 @@ impl World {
         Ok(false)
     }
 
+    /// As [`World::advance_free`] (with joints held: as [`World::advance_resting`]), and shows the world as it was at some ascending instants
+    /// within the step. Only Runge–Kutta tells these, to third order in the step, and only of a step that it makes in one.
+    ///
+    /// What a sensor reads does not cut a flight's step then. The world that is shown is to be read, not asked what acted on it. Nothing may be
+    /// so near that it could touch within the step, whichever way the bodies turn: a touch that begins and ends in it would be missed.
+    pub fn advance_past(
+        &mut self,
+        h: f64,
+        (rests, instants): (&[Rest], &[f64]),
+        mut look: impl FnMut(usize, &Self),
+    ) -> Result<bool, StepError> {
+        let (start, steps) = (self.state.time, self.state.work.steps);
+        let is_cut =
+            effect::next_switch(&self.state).is_some_and(|t| t < start + h) || self.may_turn() && !rests.is_empty();
+        if self.integrator != Integrator::RungeKutta4 || is_cut || !self.ws.touches.is_empty() {
+            return Ok(false);
+        }
+        self.refresh();
+        if contacts::is_near(&self.model, &mut self.ws, h) {
+            return Ok(false);
+        }
+        self.ws.rk.ask(&self.model, instants.iter().map(|t| (t - start) / h));
+        let flown = if rests.is_empty() { self.advance_free(h) } else { self.advance_resting(h, rests) };
+        self.ws.rk.ask(&self.model, std::iter::empty());
+        if !flown? {
+            return Ok(false);
+        }
+        if self.state.work.steps != steps + 1 {
+            self.state.copy_from(&self.ws.backup);
+            self.is_fresh = false;
+            self.refresh();
+            return Ok(false);
+        }
+        for index in 0..instants.len() {
+            std::mem::swap(&mut self.state, self.ws.rk.between(index));
+            self.update();
+            look(index, self);
+            std::mem::swap(&mut self.state, self.ws.rk.between(index));
+        }
+        self.update();
+        Ok(true)
+    }
+
+    /// Kinematics and twists of the present state.
+    fn update(&mut self) {
+        self.ws.update_positions(&self.model, &self.state);
+        self.ws.update_velocities(&self.model, &self.state);
+    }
+
     /// As [`World::advance_free`], with some joints held where they are, under Runge–Kutta. Where one of them moves, or would be set in
     /// motion by more than it may, the world stays as it was, and the answer is `false`.
     ///
     /// Momentum is untouched: the vehicle moves on as one with them.
     pub fn advance_resting(&mut self, h: f64, rests: &[Rest]) -> Result<bool, StepError> {
         let moves = |rest: &Rest| self.state.v[rest.coordinate].abs() > rest.speed;
-        if self.model.integrator != Integrator::RungeKutta4 || rests.iter().any(moves) || !self.ws.touches.is_empty() {
+        if self.integrator != Integrator::RungeKutta4 || rests.iter().any(moves) || !self.ws.touches.is_empty() {
             return Ok(false);
         }
         self.ws.held.clear();
@@ -312,9 +369,14 @@ impl World {
         self.ws.coordinate_forces[coordinate].is_limited
     }
 
+    /// Whether dry friction could turn within a step, and the integrator would feel its corner.
+    fn may_turn(&self) -> bool {
+        self.integrator == Integrator::RungeKutta4 && effect::has_dry(&self.model)
+    }
+
     fn make_step(&mut self) -> Result<(), StepError> {
         let (model, state, ws) = (&*self.model, &mut self.state, &mut self.ws);
-        match model.integrator {
+        match self.integrator {
             Integrator::ImplicitEuler => step::step(model, state, ws, Scheme::ImplicitEuler),
             Integrator::ImplicitMidpoint => step::step(model, state, ws, Scheme::ImplicitMidpoint),
             Integrator::SemiImplicitEuler => step::step(model, state, ws, Scheme::SemiImplicitEuler),

@@ -175,6 +175,14 @@ fn drag(z: f64, moved: f64) -> f64 {
 }
 
 impl JointEffect {
+    /// See [`super::EffectKind::own_rate`].
+    pub(super) fn own_rate(&self) -> f64 {
+        match self.law {
+            JointLaw::Periodic { frequency, .. } => TAU * frequency.abs(),
+            _ => 0.0,
+        }
+    }
+
     pub(super) fn memory_names(&self) -> &'static [&'static str] {
         if matches!(self.law, JointLaw::Dry(_)) { &["deflection"] } else { &[] }
     }

@@ -36,6 +36,16 @@ pub enum LineLaw {
     Saturation(f64),
 }
 
+impl LineEffect {
+    /// See [`super::EffectKind::own_rate`].
+    pub(super) fn own_rate(&self) -> f64 {
+        match self.law {
+            LineLaw::Lag(time) if time > 0.0 => 1.0 / time,
+            _ => 0.0,
+        }
+    }
+}
+
 /// One actuator's line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Line {

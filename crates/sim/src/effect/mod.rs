@@ -35,7 +35,7 @@ pub(crate) use memory::{calc_relative, is_blank, rest_parts, set_relative};
 
 use crate::actuator::{Coordinate, CoordinatePoint};
 use crate::error::ModelError;
-use crate::model::{Base, Integrator, Model};
+use crate::model::{Base, Model};
 use crate::state::State;
 use crate::step::{Scheme, calc_bias, calc_external};
 use crate::workspace::Workspace;
@@ -262,10 +262,30 @@ pub(crate) fn commit(model: &Model, state: &mut State, ws: &Workspace) {
     }
 }
 
-/// Whether dry friction could turn within a step, and the integrator would feel its corner.
-pub(crate) fn may_turn(model: &Model) -> bool {
+impl EffectKind {
+    /// The fastest that it swings, is driven or settles by itself, rad/s or 1/s; zero where it follows what else there is.
+    pub fn own_rate(&self) -> f64 {
+        let quick = |rate: f64| if rate.is_finite() { rate } else { 0.0 };
+        match self {
+            Self::Joint(effect) => effect.own_rate(),
+            Self::Series(series) => quick((series.stiffness / series.rotor).sqrt()),
+            Self::Line(line) => line.own_rate(),
+            Self::Body(effect) => match effect.law {
+                BodyLaw::Load(Load::Periodic { rate, .. }) => rate.abs(),
+                BodyLaw::Load(_) => 0.0,
+                BodyLaw::Slosh(slosh) => slosh.rate,
+                BodyLaw::Appendage(appendage) => appendage.rate,
+                BodyLaw::Sphere(sphere) => quick(sphere.c / sphere.inertia),
+            },
+            Self::Tilt(_) => 0.0,
+        }
+    }
+}
+
+/// Whether an effect is dry friction of a joint.
+pub(crate) fn has_dry(model: &Model) -> bool {
     let is_dry = |effect: &Effect| matches!(&effect.kind, EffectKind::Joint(joint) if joint.is_dry());
-    model.integrator == Integrator::RungeKutta4 && model.effects.list.iter().any(is_dry)
+    model.effects.list.iter().any(is_dry)
 }
 
 /// Whether dry friction has turned between two states.

@@ -38,3 +38,46 @@ fn energy_drifts_with_the_integrators_order() {
         assert!(drift < bound);
     }
 }
+
+/// Where the end of the arm is and how it turns, as a long step shows it and as it is.
+fn error_within(step: f64) -> f64 {
+    let instants: Vec<f64> = [0.2, 0.45, 0.5, 0.8].iter().map(|share| share * step).collect();
+    let mut world = arm(Integrator::RungeKutta4, step);
+    let mut shown = Vec::new();
+    let has_flown = world.advance_past(step, (&[], &instants), |_, world| {
+        shown.push((world.state().time, world.link_frame(0, 7).pos, world.link_twist(0, 7)));
+    });
+    assert!(has_flown.unwrap() && shown.len() == instants.len());
+    let error = |(instant, seen): (&f64, &(f64, Vec3, Twist))| {
+        let mut fine = arm(Integrator::RungeKutta4, instant / 64.0);
+        run(&mut fine, 64);
+        assert!((seen.0 - instant).abs() < 1e-12, "time {} at {instant}", seen.0);
+        (fine.link_frame(0, 7).pos - seen.1).norm() + (fine.link_twist(0, 7).ang - seen.2.ang).norm()
+    };
+    instants.iter().zip(&shown).map(error).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_long_step_shows_the_world_within_it_to_third_order() {
+    // One step: its local error goes with the fourth power of its length.
+    let errors = [0.08, 0.04, 0.02, 0.01].map(error_within);
+    println!("within steps of 80, 40, 20, 10 ms: {errors:?}");
+    let order = (errors[0] / errors[3]).log2() / 3.0;
+    assert!((3.7..5.0).contains(&order) && errors[3] < 1e-5, "order {order}: {errors:?}");
+}
+
+#[test]
+fn looking_at_the_world_within_a_step_changes_nothing() {
+    let (mut seen, mut plain) = (arm(Integrator::RungeKutta4, 0.02), arm(Integrator::RungeKutta4, 0.02));
+    for _ in 0..20 {
+        let now = seen.state().time;
+        assert!(seen.advance_past(0.02, (&[], &[now + 0.005, now + 0.013]), |_, _| ()).unwrap());
+        assert!(plain.advance_free(0.02).unwrap());
+    }
+    assert_eq!(seen.state(), plain.state());
+    // Only Runge–Kutta knows what is within its steps.
+    let mut other = arm(Integrator::ImplicitMidpoint, 0.02);
+    let before = other.state().clone();
+    assert!(!other.advance_past(0.02, (&[], &[0.01]), |_, _| ()).unwrap());
+    assert_eq!(*other.state(), before);
+}
