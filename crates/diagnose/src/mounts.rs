@@ -11,11 +11,11 @@ use scenario::measure::{Mount, Quantity};
 use sim::{Model, Rest};
 
 /// What a held mount may leave unsaid, in standard deviations of a force sensor (of a torque sensor: at an arm of 1 m).
-const UNSAID: f64 = 1e-2;
+const UNSAID: f64 = 1e-4;
 /// The same where no force is measured, N.
-const UNFELT: f64 = 1e-3;
+const UNFELT: f64 = 1e-5;
 /// Time constants after a start in which nothing is held: a difference quotient of the start must see the mount swing.
-const SETTLED: f64 = 6.0;
+const SETTLED: f64 = 12.0;
 /// Largest phase, rad, through which a mount may swing in a long step for this to be made without holding it.
 const RESOLVED: f64 = 0.3;
 

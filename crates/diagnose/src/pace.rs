@@ -13,7 +13,7 @@ use rayon::prelude::*;
 pub const TOLERANCE: f64 = 0.05;
 /// The same by long steps in free flight: a model that is varied may ask for shorter ones, and what it differs by is told in tenths of the noise.
 const IN_FLIGHT: f64 = 1e-3;
-/// Flights of at least so many steps are told by Runge–Kutta from one long step, which is cheaper than short ones by the midpoint rule.
+/// Flights of at least so many steps are told from one long step; others are not, and may be made by the midpoint rule.
 const LONG: f64 = 3.0;
 /// The same over a whole run.
 const WHOLE_TOLERANCE: f64 = 0.1;
@@ -48,17 +48,20 @@ pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) 
     let longest = some.iter().map(|s| FREE * (s.span.to - s.span.from)).fold(0.0, f64::max);
     // Commands cut longer ones.
     let mut free = longest.min(stage.tapes.iter().map(|t| usual_stretch(&t.ticks)).fold(0.0, f64::max)).max(step);
+    let moves = |free: f64| calc_difference(stage, built, &some, [Pace { free, ..Pace::even(step) }, Pace::even(step)]);
+    // Through touches the least difference in flight tells, however short its steps are.
+    let bound = IN_FLIGHT.max(2.0 * if free > step { moves(2.0 * step) } else { 0.0 }).min(TOLERANCE);
     while free > step {
-        let pace = Pace { free, ..Pace::even(step) };
-        let moved = calc_difference(stage, built, &some, [pace, Pace::even(step)]);
-        if moved <= IN_FLIGHT {
+        let moved = moves(free);
+        if moved <= bound {
             worst = worst.max(moved);
             break;
         }
         free *= 0.5;
     }
-    let mut pace = Pace { free: free.max(step), ..Pace::even(step) };
-    if built.model.is_smooth() && pace.free < LONG * step {
+    // Flights that are hardly longer gain nothing.
+    let mut pace = Pace { free: if free < LONG * step { step } else { free }, ..Pace::even(step) };
+    if built.model.is_smooth() && pace.free == step {
         let midpoint = Pace { midpoint: true, ..pace };
         pace.midpoint = calc_difference(stage, built, &some, [midpoint, pace]) <= IN_FLIGHT;
     }

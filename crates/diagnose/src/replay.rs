@@ -35,7 +35,7 @@ pub struct Pace {
 
 /// Largest phase (rad) of what effects and mounts bring with them in a step in contact, and in free flight: whatever was chosen for the nominal
 /// model, a model that is faster by itself is followed.
-const RESOLVED: [f64; 2] = [1.0, 0.3];
+const RESOLVED: [f64; 2] = [1.0, 0.1];
 
 impl Pace {
     /// One step for all.
@@ -46,10 +46,10 @@ impl Pace {
     /// Steps that also resolve what a model swings by itself; mounts in flight see to themselves.
     fn resolving(self, built: &Built) -> Self {
         let mounts = built.mounts.iter().map(|m| (m.stiffness / m.mass(&built.model)).sqrt());
-        let effects = built.model.fastest_effect();
+        let [own, driving] = built.model.effect_rates();
         let at_most = |share: f64, rate: f64| if rate > 0.0 { share / rate } else { f64::INFINITY };
-        let step = self.step.min(at_most(RESOLVED[0], mounts.fold(effects, f64::max)));
-        Self { step, free: self.free.min(at_most(RESOLVED[1], effects)).max(step), ..self }
+        let step = self.step.min(at_most(RESOLVED[0], mounts.fold(own, f64::max)));
+        Self { step, free: self.free.min(at_most(RESOLVED[1], own.max(driving))).max(step), ..self }
     }
 }
 

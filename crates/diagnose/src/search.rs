@@ -40,6 +40,8 @@ pub struct Attempt {
     pub parameters: usize,
     /// Fall of the criterion; positive is better.
     pub gain: Option<f64>,
+    /// Fall of the criterion by all that was kept with it, where that was more than one.
+    pub together: Option<f64>,
     /// Whether it was kept.
     pub kept: bool,
     /// Coordinates after the refit.
@@ -127,8 +129,11 @@ pub fn search(
         let is_old = |h: &Hypothesis| now.judge().set.findings().any(|(m, _)| m.title() == h.title());
         let members = best.judge().set.findings().map(|(h, _)| h);
         let added: Vec<String> = members.filter(|h| !is_old(h)).map(Hypothesis::title).collect();
-        let of_round = attempts.iter_mut().filter(|t| t.round == round);
-        of_round.for_each(|t| t.kept = added.contains(&format!("{} at {}", t.name, t.place)));
+        let together = (added.len() > 1).then(|| criterion(now.judge()) - criterion(best.judge()));
+        for attempt in attempts.iter_mut().filter(|t| t.round == round) {
+            attempt.kept = added.contains(&format!("{} at {}", attempt.name, attempt.place));
+            attempt.together = together.filter(|_| attempt.kept);
+        }
         let added = added.join(", ");
         let set = best.judge().set.clone();
         let before = now;
@@ -491,6 +496,7 @@ impl Attempt {
             fall: None,
             parameters: score.rank,
             gain: None,
+            together: None,
             kept: false,
             found: score.start.clone(),
             shown: score.shown.clone(),

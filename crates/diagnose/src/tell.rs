@@ -187,11 +187,12 @@ fn slides(built: &crate::plant::Built, place: &str) -> bool {
     joints.any(|j| j.name == name && j.kind == multibody::JointKind::Prismatic)
 }
 
-/// Hypotheses whose refit came near the chosen one's in the round in which it was chosen.
+/// Hypotheses whose refit came near the chosen one's in the round in which it was chosen; near that of the whole set where several were chosen
+/// together.
 fn rivals(findings: &Findings, chosen: &Member) -> Vec<Rival> {
     let is_chosen = |a: &crate::search::Attempt| a.kept && a.name == chosen.name && a.place == chosen.place;
     let Some(own) = findings.attempts.iter().find(|a| is_chosen(a)) else { return Vec::new() };
-    let Some(gain) = own.gain else { return Vec::new() };
+    let Some(gain) = own.together.or(own.gain) else { return Vec::new() };
     let same_round = findings.attempts.iter().filter(|a| a.round == own.round && !is_chosen(a));
     let near =
         same_round.filter_map(|a| a.gain.map(|g| (a, gain - g))).filter(|(_, gap)| *gap < (0.05 * gain).max(10.0));

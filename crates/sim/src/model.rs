@@ -4,7 +4,7 @@
 //! in W) the last. A `Model` never changes after [`Model::build`] and is shared by all threads.
 
 use crate::actuator::{Actuator, ActuatorKind, Coordinate};
-use crate::effect::{self, Effect, EffectKind, Effects, Series};
+use crate::effect::{Effect, EffectKind, Effects, Series};
 use crate::environment::Environment;
 use crate::error::ModelError;
 use crate::mechanism::{Mechanism, MechanismKind};
@@ -232,18 +232,19 @@ pub struct Model {
 }
 
 impl Model {
-    /// The fastest of what effects bring with them, rad/s: steps much longer than its inverse do not see it.
-    pub fn fastest_effect(&self) -> f64 {
-        self.effects.list.iter().map(|e| e.kind.own_rate()).fold(0.0, f64::max)
+    /// The fastest of what effects bring with them, and of what they drive the rest with, rad/s: steps much longer than an inverse do not see
+    /// it.
+    pub fn effect_rates(&self) -> [f64; 2] {
+        let most = |rate: fn(&EffectKind) -> f64| self.effects.list.iter().map(|e| rate(&e.kind)).fold(0.0, f64::max);
+        [most(EffectKind::own_rate), most(EffectKind::driving_rate)]
     }
 
-    /// Whether no law in it has a corner but the joints' stops: nothing may touch, no dry friction, no gear, no mechanism.
+    /// Whether no law in it has a corner but the joints' stops, and no effect a memory: nothing may touch, no dry friction, no gear, no lag,
+    /// no mechanism.
     pub fn is_smooth(&self) -> bool {
-        let has_gear = self.effects.list.iter().any(|e| matches!(e.kind, EffectKind::Series(_)));
         self.scene.pairs().is_empty()
             && self.mechanisms.is_empty()
-            && !has_gear
-            && !effect::has_dry(self)
+            && self.effects.n_memory() == 0
             && self.coordinates.iter().all(|c| c.dry.is_none())
     }
 

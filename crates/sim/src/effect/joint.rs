@@ -175,8 +175,8 @@ fn drag(z: f64, moved: f64) -> f64 {
 }
 
 impl JointEffect {
-    /// See [`super::EffectKind::own_rate`].
-    pub(super) fn own_rate(&self) -> f64 {
+    /// See [`super::EffectKind::driving_rate`].
+    pub(super) fn driving_rate(&self) -> f64 {
         match self.law {
             JointLaw::Periodic { frequency, .. } => TAU * frequency.abs(),
             _ => 0.0,

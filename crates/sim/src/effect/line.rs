@@ -37,8 +37,8 @@ pub enum LineLaw {
 }
 
 impl LineEffect {
-    /// See [`super::EffectKind::own_rate`].
-    pub(super) fn own_rate(&self) -> f64 {
+    /// See [`super::EffectKind::driving_rate`].
+    pub(super) fn driving_rate(&self) -> f64 {
         match self.law {
             LineLaw::Lag(time) if time > 0.0 => 1.0 / time,
             _ => 0.0,

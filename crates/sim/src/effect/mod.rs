@@ -263,21 +263,28 @@ pub(crate) fn commit(model: &Model, state: &mut State, ws: &Workspace) {
 }
 
 impl EffectKind {
-    /// The fastest that it swings, is driven or settles by itself, rad/s or 1/s; zero where it follows what else there is.
-    pub fn own_rate(&self) -> f64 {
+    /// The fastest that what it brings with it swings or settles, rad/s or 1/s; zero where it brings nothing that moves.
+    pub(crate) fn own_rate(&self) -> f64 {
         let quick = |rate: f64| if rate.is_finite() { rate } else { 0.0 };
         match self {
-            Self::Joint(effect) => effect.own_rate(),
             Self::Series(series) => quick((series.stiffness / series.rotor).sqrt()),
-            Self::Line(line) => line.own_rate(),
             Self::Body(effect) => match effect.law {
-                BodyLaw::Load(Load::Periodic { rate, .. }) => rate.abs(),
                 BodyLaw::Load(_) => 0.0,
                 BodyLaw::Slosh(slosh) => slosh.rate,
                 BodyLaw::Appendage(appendage) => appendage.rate,
                 BodyLaw::Sphere(sphere) => quick(sphere.c / sphere.inertia),
             },
-            Self::Tilt(_) => 0.0,
+            Self::Joint(_) | Self::Line(_) | Self::Tilt(_) => 0.0,
+        }
+    }
+
+    /// The fastest that it drives the rest, rad/s or 1/s: a period in time, a lag.
+    pub(crate) fn driving_rate(&self) -> f64 {
+        match self {
+            Self::Joint(effect) => effect.driving_rate(),
+            Self::Line(line) => line.driving_rate(),
+            Self::Body(BodyEffect { law: BodyLaw::Load(Load::Periodic { rate, .. }), .. }) => rate.abs(),
+            Self::Body(_) | Self::Series(_) | Self::Tilt(_) => 0.0,
         }
     }
 }
