@@ -64,47 +64,14 @@ const WORST: usize = 2;
 /// A screen looks at so many of the longest segments, or at more of shorter ones.
 const SEGMENTS: f64 = 24.0;
 
-/// Segments of a first look: the worst, and an even selection; more than twice as many are worth one.
-const GLANCE: (usize, usize) = (3, 4);
-/// Share of the best promise at a first look from which on a hypothesis is looked at again.
-const SEEN: f64 = 0.05;
-
 /// Scores every screen point of every hypothesis beside a converged fit; best first.
 ///
-/// Of very many segments an even selection speaks for all. Where something is amiss a few of these have the first say: what promises next to
-/// nothing there is not looked at again.
+/// Of very many segments an even selection speaks for all.
 pub fn screen(stage: &Stage<'_>, plant: &Plant, fit: &Fit, all: &[Hypothesis]) -> Result<Vec<Score>, DiagnoseError> {
     let (thinned, share) = thinned(fit);
-    let stage = stage.coarser();
-    let scale = |mut scores: Vec<Score>, share: f64| {
-        scores.iter_mut().for_each(|s| s.score /= share);
-        scores
-    };
-    if !fit.is_significant() || thinned.segments.len() <= 2 * (GLANCE.0 + GLANCE.1) {
-        return Ok(scale(screen_all(&stage, plant, &thinned, all)?, share));
-    }
-    let (few, part) = glanced(&stage, &thinned);
-    let glance = scale(screen_all(&stage, plant, &few, all)?, part * share);
-    let best = glance.first().map_or(0.0, |s| s.score);
-    let is_seen = |h: usize| glance.iter().any(|s| s.hypothesis == h && s.score > SEEN * best);
-    let seen: Vec<usize> = (0..all.len()).filter(|h| is_seen(*h)).collect();
-    let again: Vec<Hypothesis> = seen.iter().map(|h| all[*h].clone()).collect();
-    let of_all = |s: Score| Score { hypothesis: seen[s.hypothesis], ..s };
-    let again = scale(screen_all(&stage, plant, &thinned, &again)?, share).into_iter().map(of_all);
-    let dull = glance.into_iter().filter(|s| !seen.contains(&s.hypothesis));
-    let mut scores: Vec<Score> = again.chain(dull).collect();
-    scores.sort_by(|a, b| b.score.total_cmp(&a.score));
+    let mut scores = screen_all(&stage.coarser(), plant, &thinned, all)?;
+    scores.iter_mut().for_each(|s| s.score /= share);
     Ok(scores)
-}
-
-/// A fit of a few of its segments, and the part of the excess that these have.
-fn glanced(stage: &Stage<'_>, fit: &Fit) -> (Fit, f64) {
-    let excess = |s: &Segment| stage.residuals(&fit.built, s).norm_squared() - s.weight * stage.count(s) as f64;
-    let excesses: Vec<f64> = fit.segments.par_iter().map(excess).collect();
-    let chosen = spokesmen(&excesses, GLANCE);
-    let part = chosen.iter().map(|i| excesses[*i]).sum::<f64>() / excesses.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-    let segments = chosen.iter().map(|i| fit.segments[*i].clone()).collect();
-    (Fit { segments, ..fit.clone() }, part.clamp(f64::MIN_POSITIVE, 1.0))
 }
 
 /// A fit of an even selection of its segments that is enough to screen by, and their share of all.
