@@ -138,9 +138,9 @@ fn begin_from(stage: &Stage<'_>, segments: &mut [Segment], known: &[Segment]) {
         let begins_alike = |k: &&Segment| k.run == segment.run && (k.span.from - segment.span.from).abs() < 1e-9;
         let Some(known) = known.iter().find(begins_alike) else { continue };
         segment.start.clone_from(&known.start);
-        let of_few = known.columns.as_ref().is_some_and(|k| k.columns.iter().all(|c| c.len() == stage.count(segment)));
-        if (known.span.to - segment.span.to).abs() < 1e-9 && known.weight == segment.weight && of_few {
-            segment.columns.clone_from(&known.columns);
+        if (known.span.to - segment.span.to).abs() < 1e-9 && known.weight == segment.weight {
+            let count = stage.count(segment);
+            segment.columns = known.columns.clone().filter(|k| k.is_of(count));
         }
     }
 }

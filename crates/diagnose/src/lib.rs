@@ -8,6 +8,7 @@
 
 mod approaches;
 pub mod catalogue;
+mod choice;
 mod condition;
 mod curves;
 mod detect;

@@ -50,6 +50,13 @@ pub struct StartColumns {
     pub within: Vec<DVector<f64>>,
 }
 
+impl StartColumns {
+    /// Whether they are those of a residual of so many scalars.
+    pub(crate) fn is_of(&self, count: usize) -> bool {
+        self.columns.iter().all(|c| c.len() == count)
+    }
+}
+
 /// Steps of the difference quotients by coordinate of a start; they live from one linearisation to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Steps(Arc<[(Freedom, f64)]>);

@@ -31,7 +31,7 @@ pub struct Mounts {
 impl Mounts {
     /// Mounts of a model that forbid long steps unless they are held; none where one of them has no damper.
     pub fn new(model: &Model, mounts: &[Mount], tape: &Tape, pace: Pace) -> Self {
-        let swings = |m: &Mount| pace.free * (m.stiffness / m.mass(model)).sqrt() > RESOLVED;
+        let swings = |m: &Mount| pace.free * m.rate(model) > RESOLVED;
         if pace.free <= pace.step || !mounts.iter().any(swings) || !mounts.iter().all(|m| m.damping > 0.0) {
             return Self::default();
         }

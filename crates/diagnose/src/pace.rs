@@ -7,6 +7,7 @@ use crate::linear::{Segment, Stage};
 use crate::plant::Built;
 use crate::replay::Pace;
 use crate::tape::Tape;
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 /// Difference (rms over a window, units of noise) that a halved step may make.
@@ -48,7 +49,9 @@ pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) 
     let longest = some.iter().map(|s| FREE * (s.span.to - s.span.from)).fold(0.0, f64::max);
     // Commands cut longer ones.
     let mut free = longest.min(stage.tapes.iter().map(|t| usual_stretch(&t.ticks)).fold(0.0, f64::max)).max(step);
-    let moves = |free: f64| calc_difference(stage, built, &some, [Pace { free, ..Pace::even(step) }, Pace::even(step)]);
+    let replayed = |pace: Pace| Replayed::new(stage, built, &some, pace);
+    let short = replayed(Pace::even(step));
+    let moves = |free: f64| replayed(Pace { free, ..Pace::even(step) }).calc_difference(&short);
     // Through touches the least difference in flight tells, however short its steps are.
     let bound = IN_FLIGHT.max(2.0 * if free > step { moves(2.0 * step) } else { 0.0 }).min(TOLERANCE);
     while free > step {
@@ -62,8 +65,7 @@ pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) 
     // Flights that are hardly longer gain nothing.
     let mut pace = Pace { free: if free < LONG * step { step } else { free }, ..Pace::even(step) };
     if built.model.is_smooth() && pace.free == step {
-        let midpoint = Pace { midpoint: true, ..pace };
-        pace.midpoint = calc_difference(stage, built, &some, [midpoint, pace]) <= IN_FLIGHT;
+        pace.midpoint = replayed(Pace { midpoint: true, ..pace }).calc_difference(&short) <= IN_FLIGHT;
     }
     Discretisation { pace, worst }
 }
@@ -82,7 +84,8 @@ pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment]) -> Discretisat
             Pace { step: step.min(0.5 * free), free: 0.5 * free, ..pace },
         ];
         let may = [step > finest.step, free > finest.free];
-        let moved = finer.map(|finer| calc_difference(stage, built, &runs, [pace, finer]));
+        let now = Replayed::new(stage, built, &runs, pace);
+        let moved = finer.map(|finer| now.calc_difference(&Replayed::new(stage, built, &runs, finer)));
         let worst = moved[0].max(moved[1]);
         if worst > WHOLE_TOLERANCE && pace.midpoint {
             pace.midpoint = false;
@@ -92,11 +95,9 @@ pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment]) -> Discretisat
         if worst <= WHOLE_TOLERANCE || !is_due(0) && !is_due(1) {
             return Discretisation { pace, worst };
         }
-        pace = Pace {
-            step: if is_due(0) { finer[0].step } else { step }.min(if is_due(1) { finer[1].step } else { step }),
-            free: if is_due(1) { finer[1].free } else { finer[0].free },
-            ..pace
-        };
+        for finer in (0..2).filter(|k| is_due(*k)).map(|k| finer[k]) {
+            pace = Pace { step: pace.step.min(finer.step), free: pace.free.min(finer.free), ..pace };
+        }
     }
 }
 
@@ -108,12 +109,15 @@ fn halved(
     mut pace: Pace,
     (tolerance, finest): (f64, f64),
 ) -> (Pace, f64) {
-    let mut worst = calc_worst(stage, built, segments, pace);
-    while worst > tolerance && 0.5 * pace.step > finest {
-        pace = half(pace);
-        worst = calc_worst(stage, built, segments, pace);
+    let mut now = Replayed::new(stage, built, segments, pace);
+    loop {
+        let finer = Replayed::new(stage, built, segments, half(pace));
+        let worst = now.calc_difference(&finer);
+        if worst <= tolerance || 0.5 * pace.step <= finest {
+            return (pace, worst);
+        }
+        (pace, now) = (half(pace), finer);
     }
-    (pace, worst)
 }
 
 pub(crate) fn half(pace: Pace) -> Pace {
@@ -125,22 +129,39 @@ fn half_times(pace: Pace, times: i32) -> Pace {
     Pace { step: share * pace.step, free: share * pace.free, ..pace }
 }
 
-/// Largest difference from steps of half the length.
-pub fn calc_worst(stage: &Stage<'_>, built: &Built, segments: &[&Segment], pace: Pace) -> f64 {
-    calc_difference(stage, built, segments, [pace, half(pace)])
+/// Residuals of some segments at a pace.
+struct Replayed<'a> {
+    stage: &'a Stage<'a>,
+    segments: &'a [&'a Segment],
+    residuals: Vec<DVector<f64>>,
+    /// Part of what is missed that counts like noise.
+    of_the_miss: f64,
 }
 
-fn calc_difference(stage: &Stage<'_>, built: &Built, segments: &[&Segment], paces: [Pace; 2]) -> f64 {
-    // Where parts touch a coarse step changes what happens, not only how exactly.
-    let miss = if touches(built) { 0.0 } else { OF_THE_MISS };
-    let of = |segment: &&Segment| {
-        let [a, b] = paces.map(|pace| Stage { pace, ..*stage }.residuals(built, segment));
-        let count = stage.count(segment).max(1) as f64;
-        let missed = (b.norm_squared() / (segment.weight * count)).sqrt();
-        let difference = (a - b).norm_squared() / count;
-        if difference.is_finite() { difference.sqrt() / (miss * missed).max(1.0) } else { f64::INFINITY }
-    };
-    segments.par_iter().map(of).reduce(|| 0.0, f64::max)
+impl<'a> Replayed<'a> {
+    fn new(stage: &'a Stage<'a>, built: &Built, segments: &'a [&'a Segment], pace: Pace) -> Self {
+        let paced = Stage { pace, ..*stage };
+        let residuals = segments.par_iter().map(|s| paced.residuals(built, s)).collect();
+        // Where parts touch a coarse step changes what happens, not only how exactly.
+        let of_the_miss = if touches(built) { 0.0 } else { OF_THE_MISS };
+        Self { stage, segments, residuals, of_the_miss }
+    }
+
+    /// Largest difference (rms over a segment, units of noise) from finer steps.
+    fn calc_difference(&self, finer: &Self) -> f64 {
+        let of = |(segment, (a, b)): (&&Segment, (&DVector<f64>, &DVector<f64>))| {
+            let count = self.stage.count(segment).max(1) as f64;
+            let missed = (b.norm_squared() / (segment.weight * count)).sqrt();
+            let difference = (a - b).norm_squared() / count;
+            if difference.is_finite() {
+                difference.sqrt() / (self.of_the_miss * missed).max(1.0)
+            } else {
+                f64::INFINITY
+            }
+        };
+        let pairs = self.residuals.iter().zip(&finer.residuals);
+        self.segments.iter().zip(pairs).map(of).fold(0.0, f64::max)
+    }
 }
 
 /// Whether any parts of a model may touch.

@@ -45,7 +45,7 @@ impl Pace {
 
     /// Steps that also resolve what a model swings by itself; mounts in flight see to themselves.
     fn resolving(self, built: &Built) -> Self {
-        let mounts = built.mounts.iter().map(|m| (m.stiffness / m.mass(&built.model)).sqrt());
+        let mounts = built.mounts.iter().map(|m| m.rate(&built.model));
         let [own, driving] = built.model.effect_rates();
         let at_most = |share: f64, rate: f64| if rate > 0.0 { share / rate } else { f64::INFINITY };
         let step = self.step.min(at_most(RESOLVED[0], mounts.fold(own, f64::max)));
@@ -123,8 +123,9 @@ fn measure(
     let events = events_in(tape, span, sensors);
     let mut replay = Replay::new(built, tape, start, span.from, pace);
     let may_hold = !replay.mounts.rests.is_empty();
+    let gauge_of = |event: &Event| &sensors[event.reading as usize].0;
     let rests = |event: &Event| {
-        let gauge = &sensors[event.reading as usize].0;
+        let gauge = gauge_of(event);
         gauge.rests_untouched() || may_hold && gauge.is_behind_mount()
     };
     // What nothing touches reads nothing, and behind a mount that is held always the same: no step has to end there.
@@ -132,15 +133,15 @@ fn measure(
         true => gauge.read(world),
         false => Measured::Vector(Vec3::zeros()),
     };
-    let is_smooth = |event: &Event| rests(event) || !sensors[event.reading as usize].0.reads_contact();
+    let is_smooth = |event: &Event| rests(event) || !gauge_of(event).reads_contact();
     // Until when nothing is known to touch; and the next instant at which something else than a contact is read.
     let (mut flown, mut next) = (f64::NEG_INFINITY, 0);
     let mut at = 0;
     while let Some((i, event)) = events.get(at) {
-        let (gauge, _) = &sensors[event.reading as usize];
+        let gauge = gauge_of(event);
         let passed = replay.glide(&events[at..], is_smooth, |k, world| {
             let (i, event) = &events[at + k];
-            let (gauge, _) = &sensors[event.reading as usize];
+            let gauge = gauge_of(event);
             look(*i, event, &if rests(event) { still(gauge, world) } else { gauge.read(world) });
         })?;
         if passed > 0 {

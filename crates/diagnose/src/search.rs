@@ -6,6 +6,7 @@
 //! Bayesian information criterion (Schwarz 1978), cost + k ln N; then try to take out each member. It ends when the cost is what noise
 //! alone would leave, or nothing promising is left.
 
+use crate::choice::{brought_by, by_criterion, is_enough, put_corrections_first, take_further};
 use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::{Hypothesis, Tier};
@@ -79,8 +80,6 @@ const WORTHWHILE: f64 = 0.2;
 const UNPROMISING: f64 = 0.08;
 /// Difference, as a share of what the best of them has brought, below which refits are not told apart before they have converged.
 pub(crate) const TIE: f64 = 0.01;
-/// The same below which a nominal number goes before other physics, once there is an effect.
-const CORRECTION: f64 = 0.05;
 /// Promise relative to what another refit has brought below which none is made.
 const RIVAL: f64 = 0.9;
 /// The same relative to the largest promise, where no refit leaves nothing.
@@ -88,15 +87,13 @@ const EQUAL: f64 = 0.7;
 /// Share of the excess that cheap hypotheses promise where those that are dear to screen need not be.
 const SUFFICIENT: f64 = 0.5;
 /// Share of the excess that a set must leave for further screens in a round.
-const UNEXPLAINED: f64 = 0.05;
+pub(crate) const UNEXPLAINED: f64 = 0.05;
 /// Hypotheses of a screen that a watcher hears of.
 const TOLD: usize = 8;
 /// Hypotheses, best first, that are screened over whole runs after windows.
 const SCREENED: usize = 30;
 /// Share of the excess that a refit may leave where other refits are only made of what promises as much.
 const NEXT_TO_NOTHING: f64 = 0.01;
-/// Share of the best fall in the windows from which on a refit goes on to whole runs.
-const NEARLY: f64 = 0.6;
 
 /// Adds and removes effects until nothing significant is left or nothing helps.
 ///
@@ -218,7 +215,7 @@ fn refine(stage: &mut Stage<'_>, standing: &Standing) -> bool {
 }
 
 /// Steps that a model needs in some windows, or the present ones where these are finer.
-fn no_coarser(stage: &Stage<'_>, built: &Built, segments: &[Segment]) -> Pace {
+pub(crate) fn no_coarser(stage: &Stage<'_>, built: &Built, segments: &[Segment]) -> Pace {
     let now = stage.pace;
     let found = pace::choose(stage, built, segments, now.step).pace;
     let step = found.step.min(now.step);
@@ -292,75 +289,9 @@ fn refit_best(
         let order: Vec<(String, String)> =
             attempts.iter().take(SCREENED).map(|a| (a.name.clone(), a.place.clone())).collect();
         all.retain(|h| has_begun || order.iter().any(|(name, place)| h.name == name && h.place == *place));
-        let most = brought_by(here, &ready);
-        for (at, tried) in ready {
-            if best.as_ref().is_some_and(|b| is_done(now, b)) || here.cost - tried.cost < NEARLY * most {
-                continue;
-            }
-            let standing = if is_window {
-                // What it adds may be faster than what the nominal model has.
-                let stage = &Stage { pace: no_coarser(stage, &tried.built, &tried.segments), ..*stage };
-                now.climbed(stage, plant, tried, LOOK)?
-            } else {
-                Standing { whole: tried, ..now.clone() }
-            };
-            let name = format!("{} at {}", attempts[at].name, attempts[at].place);
-            stage.work.watch.step(&format!("{name}: {}", errors(&standing)));
-            if standing.follows() && now.follows() {
-                attempts[at].tell(&now.whole, &standing.whole);
-            }
-            let is_preferable =
-                |b: &Standing| is_luxury(now, &standing, b) || standing.is_better(b) && !is_luxury(now, b, &standing);
-            if best.as_ref().is_none_or(is_preferable) {
-                best = Some(standing);
-            }
-        }
+        best = take_further(stage, plant, now, (is_window, ready), (best, &mut attempts))?;
     }
     Ok((best, attempts))
-}
-
-/// The order of refits, best first.
-fn by_criterion(a: &(usize, Fit), b: &(usize, Fit)) -> std::cmp::Ordering {
-    criterion(&a.1).total_cmp(&criterion(&b.1))
-}
-
-/// Beside what was found already a number that is slightly off is likelier than more physics.
-fn put_corrections_first(here: &Fit, ready: &mut [(usize, Fit)]) {
-    let enough = ready.first().map_or(0.0, |r| criterion(&r.1)) + CORRECTION * brought_by(here, ready);
-    let is_correction = |r: &(usize, Fit)| r.1.set.ends_with_correction() && criterion(&r.1) < enough;
-    if let Some(at) = ready.iter().position(is_correction).filter(|_| here.set.has_findings()) {
-        ready[..=at].rotate_right(1);
-    }
-}
-
-/// The largest fall of the cost by a refit.
-fn brought_by(here: &Fit, ready: &[(usize, Fit)]) -> f64 {
-    ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max)
-}
-
-/// Whether what one standing does more than another that corrects a nominal number is too little for more physics beside what was found.
-fn is_luxury(now: &Standing, plain: &Standing, other: &Standing) -> bool {
-    let [plain_costs, other_costs] = [plain, other].map(|s| criterion(s.judge()));
-    let brought = criterion(now.judge()) - other_costs;
-    now.judge().set.has_findings()
-        && plain.judge().set.ends_with_correction()
-        && !other.judge().set.ends_with_correction()
-        && plain.is_comparable(other)
-        && now.is_comparable(other)
-        && plain_costs - other_costs < CORRECTION * brought
-}
-
-/// Whether a standing leaves nothing; where windows had to be shortened, whether it has come from there to whole runs or explains the longest.
-fn is_done(now: &Standing, best: &Standing) -> bool {
-    let has_climbed = best.rungs.is_empty() && !now.rungs.is_empty();
-    !best.judge().is_significant() || has_climbed && (best.follows() || !best.windows.is_significant())
-}
-
-/// Whether a standing leaves so little of what there was that other hypotheses need not be looked for in this round.
-fn is_enough(now: &Standing, best: &Standing) -> bool {
-    is_done(now, best)
-        || best.rungs.len() < now.rungs.len()
-        || best.is_comparable(now) && best.judge().excess() < UNEXPLAINED * now.judge().excess()
 }
 
 /// Screens, and says so.
@@ -503,7 +434,8 @@ impl Attempt {
         }
     }
 
-    fn tell(&mut self, before: &Fit, after: &Fit) {
+    /// What came of it.
+    pub(crate) fn tell(&mut self, before: &Fit, after: &Fit) {
         self.fall = Some(before.cost - after.cost);
         self.share = ((before.cost - after.cost) / before.excess().max(0.2 * before.noise)).clamp(0.0, 1.0);
         self.gain = Some(criterion(before) - criterion(after));

@@ -30,11 +30,6 @@ const ENOUGH: usize = 10;
 /// Promised fall of a segment's cost below which its start has converged, variances of noise.
 const NEXT_TO_NOTHING: f64 = 0.1;
 
-/// Whether columns are those of a residual of this length.
-fn is_of(known: &StartColumns, r: &DVector<f64>) -> bool {
-    known.columns.iter().all(|c| c.len() == r.len())
-}
-
 /// A segment with its start at its best.
 #[derive(Clone, Debug)]
 pub struct Settled {
@@ -89,7 +84,7 @@ impl Stage<'_> {
         let mut now = Settled { segment, cost, shown: 0, iterations: 0, converged };
         let mut damping = 0.0;
         // A start that was at its best may be so still: then old derivatives promise nothing.
-        let known = now.segment.columns.as_ref().filter(|k| k.freedoms == all && is_of(k, &r));
+        let known = now.segment.columns.as_ref().filter(|k| k.freedoms == all && k.is_of(r.len()));
         if effort.share >= Effort::JUDGED.share && effort.iterations > 0 && !now.converged && known.is_some() {
             self.descend(built, &mut now, &mut r, (&mut damping, effort));
         }

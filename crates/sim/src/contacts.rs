@@ -248,9 +248,18 @@ pub(crate) fn is_near(model: &Model, ws: &mut Workspace, h: f64) -> bool {
     if model.scene.pairs().is_empty() {
         return false;
     }
-    update_reach(model, ws, h);
-    ws.detector.detect(&model.scene, &ws.frames, &ws.reach, &mut ws.points);
+    find_points(model, ws, h);
     !ws.points.is_empty()
+}
+
+/// Finds the points of all pairs that may touch within `h` s.
+fn find_points(model: &Model, ws: &mut Workspace, h: f64) {
+    if model.dead_weights.len() < model.scene.pairs().len() {
+        update_reach(model, ws, h);
+        ws.detector.detect(&model.scene, &ws.frames, &ws.reach, &mut ws.points);
+    }
+    keep_deepest(model, &mut ws.points);
+    dead_weight::add_points(model, ws);
 }
 
 /// Finds the touching points at the present frames and gives each its bristle.
@@ -259,12 +268,7 @@ pub(crate) fn find_touches(model: &Model, state: &State, ws: &mut Workspace, h: 
     if model.scene.pairs().is_empty() {
         return;
     }
-    if model.dead_weights.len() < model.scene.pairs().len() {
-        update_reach(model, ws, h);
-        ws.detector.detect(&model.scene, &ws.frames, &ws.reach, &mut ws.points);
-    }
-    keep_deepest(model, &mut ws.points);
-    dead_weight::add_points(model, ws);
+    find_points(model, ws, h);
     for i in 0..ws.points.len() {
         let contact = ws.points[i];
         let (body_a, body_b) = model.pair_bodies(contact.pair as usize);

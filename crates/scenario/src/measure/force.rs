@@ -61,6 +61,11 @@ impl Mount {
         tree.bodies[tree.links[self.link].body].inertia.mass
     }
 
+    /// At which the tip swings on its spring, rad/s.
+    pub fn rate(&self, model: &Model) -> f64 {
+        (self.stiffness / self.mass(model)).sqrt()
+    }
+
     /// The mount that carries a global body; none where it is not on one.
     pub(super) fn of(model: &Model, body: usize) -> Option<Self> {
         let &(vehicle, local) = model.owners.get(body)?;

@@ -179,7 +179,13 @@ impl JointEffect {
     pub(super) fn driving_rate(&self) -> f64 {
         match self.law {
             JointLaw::Periodic { frequency, .. } => TAU * frequency.abs(),
-            _ => 0.0,
+            JointLaw::Viscous { .. }
+            | JointLaw::ViscousBySide { .. }
+            | JointLaw::Quadratic { .. }
+            | JointLaw::Offset { .. }
+            | JointLaw::Dry(_)
+            | JointLaw::Ripple { .. }
+            | JointLaw::Cable { .. } => 0.0,
         }
     }
 

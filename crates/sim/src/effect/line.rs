@@ -41,7 +41,7 @@ impl LineEffect {
     pub(super) fn driving_rate(&self) -> f64 {
         match self.law {
             LineLaw::Lag(time) if time > 0.0 => 1.0 / time,
-            _ => 0.0,
+            LineLaw::Lag(_) | LineLaw::Gain(_) | LineLaw::Delay(_) | LineLaw::Saturation(_) => 0.0,
         }
     }
 }
