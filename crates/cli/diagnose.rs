@@ -26,6 +26,9 @@ pub(crate) struct Arguments {
     /// No progress bar
     #[arg(long)]
     quiet: bool,
+    /// How much work a search may do, relative to the usual (minutes on two cores)
+    #[arg(long, default_value_t = 1.0, value_name = "FACTOR")]
+    effort: f64,
     /// Print what the search tries and where the time goes
     #[arg(long)]
     verbose: bool,
@@ -59,7 +62,7 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let target = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out/diagnose").join(name));
     let folder = OutputFolder::create(&target)?;
     let progress = Progress { bar: progress(arguments.quiet || arguments.verbose), is_verbose: arguments.verbose };
-    let (diagnosis, evidence) = diagnose::diagnose(scenario.clone(), &set, &progress)?;
+    let (diagnosis, evidence) = diagnose::run::diagnose_with(scenario.clone(), &set, (arguments.effort, &progress))?;
     progress.bar.finish_and_clear();
     for stage in evidence.timings.iter().filter(|_| arguments.verbose) {
         eprintln!("{:>7.1} s  {:<40} {:>9.1} s simulated", stage.wall_s, stage.name, stage.simulated_s);

@@ -6,6 +6,7 @@ use crate::linear::Stage;
 use crate::plant::Plant;
 use crate::search::{Attempt, LOOK, UNEXPLAINED, errors, no_coarser};
 use crate::standing::{Standing, criterion};
+use crate::work::Until;
 
 /// Difference, as a share of what the best of them has brought, below which a nominal number goes before other physics, once there is an effect.
 const CORRECTION: f64 = 0.05;
@@ -24,7 +25,8 @@ pub(crate) fn take_further(
     let here = if is_window { &now.windows } else { &now.whole };
     let most = brought_by(here, &ready);
     for (at, tried) in ready {
-        if best.as_ref().is_some_and(|b| is_done(now, b)) || here.cost - tried.cost < NEARLY * most {
+        let is_enough = |b: &Standing| is_done(now, b) || stage.work.is_spent(Until::Search);
+        if best.as_ref().is_some_and(is_enough) || here.cost - tried.cost < NEARLY * most {
             continue;
         }
         let standing = if is_window {

@@ -11,6 +11,7 @@ use crate::error::DiagnoseError;
 use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::{Segment, SegmentLinear, Stage, Variation, sum_reduced};
 use crate::plant::{Built, Plant};
+use crate::work::Until;
 use nalgebra::{DMatrix, DVector};
 use scenario::spec::Effect;
 
@@ -251,6 +252,9 @@ pub fn fit(
     let mut last = Went { damping: 1e-3, ..Went::default() };
     let mut most = 0.0f64;
     while now.iterations < effort.iterations && !now.converged {
+        if now.iterations > 0 && stage.work.is_spent(Until::Fit) {
+            break;
+        }
         let before = now.cost;
         let effort = Effort { reuse: effort.reuse && !last.wants_fresh, ..effort };
         let went = iterate(stage, plant, &mut now, &mut sizes, (last.damping, effort))?;

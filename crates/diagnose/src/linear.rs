@@ -10,7 +10,7 @@
 //! test need.
 
 use crate::plant::Built;
-use crate::replay::{Pace, Span, readings, residuals, residuals_of};
+use crate::replay::{Pace, Span, readings, residuals_of};
 use crate::start::{Freedom, Start, freedoms};
 use crate::tape::Tape;
 use crate::work::Work;
@@ -166,19 +166,22 @@ impl Stage<'_> {
     }
 
     fn residuals_from(&self, built: &Built, segment: &Segment, start: &Start) -> DVector<f64> {
-        let tape = &self.tapes[segment.run];
-        self.work.add(segment.span.to - segment.span.from);
-        match residuals(built, tape, start, segment.span, self.pace) {
-            Ok(r) if segment.weight == 1.0 => DVector::from_vec(r),
-            Ok(r) => DVector::from_vec(r) * segment.weight.sqrt(),
-            Err(_) => DVector::from_element(self.count(segment), f64::INFINITY),
+        match self.readings_from(built, segment, start) {
+            Some(readings) => self.residuals_of(&readings, built, segment),
+            None => DVector::from_element(self.count(segment), f64::INFINITY),
         }
     }
 
     /// What faultless sensors would read in a segment; none where the replay left the range of numbers.
     pub fn readings(&self, built: &Built, segment: &Segment) -> Option<Vec<Measured>> {
-        self.work.add(segment.span.to - segment.span.from);
-        readings(built, &self.tapes[segment.run], &segment.start, segment.span, self.pace).ok()
+        self.readings_from(built, segment, &segment.start)
+    }
+
+    fn readings_from(&self, built: &Built, segment: &Segment, start: &Start) -> Option<Vec<Measured>> {
+        let found = readings(built, &self.tapes[segment.run], start, segment.span, self.pace);
+        let work = found.as_ref().map_or_else(|_| sim::Work::default(), |r| r.work);
+        self.work.add(segment.span.to - segment.span.from, built.model.owners.len(), &work);
+        found.ok().map(|r| r.values)
     }
 
     /// Change of the residual per unit of a variation that concerns nothing but how readings are read.
@@ -195,6 +198,7 @@ impl Stage<'_> {
     /// Residuals of a segment whose readings are known; infinite where there are none.
     pub fn residuals_of(&self, readings: &[Measured], built: &Built, segment: &Segment) -> DVector<f64> {
         match residuals_of(readings, built, &self.tapes[segment.run], segment.span) {
+            Ok(r) if !readings.is_empty() && segment.weight == 1.0 => DVector::from_vec(r),
             Ok(r) if !readings.is_empty() => DVector::from_vec(r) * segment.weight.sqrt(),
             _ => DVector::from_element(self.count(segment), f64::INFINITY),
         }

@@ -10,6 +10,7 @@ use crate::linear::Stage;
 use crate::plant::Plant;
 use crate::search::{LOOK, TIE, WHOLE, errors};
 use crate::standing::{Standing, criterion};
+use crate::work::Until;
 
 /// Fits of a set that may be far off.
 const GLANCE: Effort = Effort { iterations: 2, share: 2e-2, floor: 0.1, reuse: true };
@@ -29,6 +30,9 @@ fn one_for_all(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<Standi
     let set = &now.judge().set;
     let members: Vec<_> = set.findings().collect();
     for (h, x) in members.iter().rev().filter(|_| members.len() > 1) {
+        if stage.work.is_spent(Until::Prune) {
+            break;
+        }
         let alone = set.tolerated().with(h, x);
         let near = fit(stage, plant, alone, now.judge().segments.clone(), LOOK)?;
         if near.rms() > NECESSARY * now.judge().rms() {
@@ -47,7 +51,12 @@ fn one_for_all(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<Standi
 pub(crate) fn prune(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<Standing, DiagnoseError> {
     let mut now = one_for_all(stage, plant, now)?;
     let mut member = 0;
-    while now.judge().set.findings().count() > 1 && member < now.judge().set.members.len() {
+    let is_open = |now: &Standing, member| {
+        now.judge().set.findings().count() > 1
+            && member < now.judge().set.members.len()
+            && !stage.work.is_spent(Until::Prune)
+    };
+    while is_open(&now, member) {
         if now.judge().set.members[member].0.is_tolerated() {
             member += 1;
             continue;

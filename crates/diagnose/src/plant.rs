@@ -3,7 +3,7 @@
 use crate::error::DiagnoseError;
 use record::{RecordedRun, RecordingSet};
 use scenario::measure::{Gauge, MeasureError, Mount, Quantity, SensorModel};
-use scenario::spec::{Effect, ParamValue};
+use scenario::spec::{Effect, Integrator, IntegratorKind, ParamValue};
 use scenario::{DriveChannel, Scenario, Stock};
 use sim::{Actuator, ActuatorKind, DrivePath, Model, State};
 use std::sync::{Arc, OnceLock};
@@ -40,9 +40,18 @@ pub struct Built {
     pub delay: f64,
 }
 
+/// Step from which Runge–Kutta's is sought, in steps at which a scheme of lower order, which damps, holds.
+const FINER: f64 = 0.25;
+
 impl Plant {
     /// The scenario alone, before a recording is read.
-    pub fn new(scenario: Scenario) -> Self {
+    ///
+    /// Replays go by Runge–Kutta, whatever the scenario's own scheme: what a scheme of first order loses at the scenario's step would be taken
+    /// for physics. Their steps are chosen by what halving them moves ([`crate::pace`]).
+    pub fn new(mut scenario: Scenario) -> Self {
+        if scenario.integrator.kind != IntegratorKind::Rk4 {
+            scenario.integrator = Integrator { kind: IntegratorKind::Rk4, step_s: FINER * scenario.integrator.step_s };
+        }
         Self { scenario, channels: Vec::new(), drives: Vec::new(), stock: OnceLock::new() }
     }
 

@@ -56,9 +56,13 @@ impl Pace {
 /// Two instants closer than this are one, s.
 const SAME: f64 = 1e-9;
 
-/// Residuals of a replay, in the order of the tape's events within the span.
-pub fn residuals(built: &Built, tape: &Tape, start: &Start, span: Span, pace: Pace) -> Result<Vec<f64>, DiagnoseError> {
-    residuals_of(&readings(built, tape, start, span, pace)?, built, tape, span)
+/// What faultless sensors would read in a replay, by the number of the event within the span, and what that took.
+#[derive(Clone, Debug)]
+pub struct Readings {
+    /// One for each event; late sensors are late.
+    pub values: Vec<Measured>,
+    /// What was computed for them.
+    pub work: sim::Work,
 }
 
 /// Replays a span and hands every predicted reading to `look`, with its number among the span's events.
@@ -71,22 +75,17 @@ pub fn observe(
     mut look: impl FnMut(usize, &Event, &Value),
 ) -> Result<(), DiagnoseError> {
     let sensors = sensors_of(built, tape)?;
-    measure(built, tape, start, (span, pace), &sensors, |i, event, truth| {
+    let shown = measure(built, tape, start, (span, pace), &sensors, |i, event, truth| {
         look(i, event, &Value::from(sensors[event.reading as usize].1.apply(truth)));
-    })
+    });
+    shown.map(|_| ())
 }
 
-/// What faultless sensors would read in a span, by the number of the event; late ones are late.
-pub fn readings(
-    built: &Built,
-    tape: &Tape,
-    start: &Start,
-    span: Span,
-    pace: Pace,
-) -> Result<Vec<Measured>, DiagnoseError> {
-    let mut out = vec![Measured::Scalar(f64::NAN); tape.range(span).len()];
-    measure(built, tape, start, (span, pace), &sensors_of(built, tape)?, |i, _, truth| out[i] = *truth)?;
-    Ok(out)
+/// Replays a span for what its sensors would read.
+pub fn readings(built: &Built, tape: &Tape, start: &Start, span: Span, pace: Pace) -> Result<Readings, DiagnoseError> {
+    let mut values = vec![Measured::Scalar(f64::NAN); tape.range(span).len()];
+    let work = measure(built, tape, start, (span, pace), &sensors_of(built, tape)?, |i, _, truth| values[i] = *truth)?;
+    Ok(Readings { values, work })
 }
 
 /// Residuals of faultless readings when the sensors have the faults of a model, but for delays.
@@ -111,7 +110,7 @@ fn sensors_of(built: &Built, tape: &Tape) -> Result<Vec<(Gauge, SensorModel)>, D
     Ok(sensors)
 }
 
-/// Replays a span and hands what every sensor is given to read to `look`.
+/// Replays a span and hands what every sensor is given to read to `look`; what that took.
 fn measure(
     built: &Built,
     tape: &Tape,
@@ -119,7 +118,7 @@ fn measure(
     (span, pace): (Span, Pace),
     sensors: &[(Gauge, SensorModel)],
     mut look: impl FnMut(usize, &Event, &Measured),
-) -> Result<(), DiagnoseError> {
+) -> Result<sim::Work, DiagnoseError> {
     let events = events_in(tape, span, sensors);
     let mut replay = Replay::new(built, tape, start, span.from, pace);
     let may_hold = !replay.mounts.rests.is_empty();
@@ -167,7 +166,7 @@ fn measure(
         }
         look(*i, event, &gauge.read(&replay.world));
     }
-    Ok(())
+    Ok(replay.world.state().work)
 }
 
 /// Starts at some ascending instants of a replay, for windows that begin there.
@@ -460,7 +459,7 @@ mod tests {
         let (built, tape, start) = docking();
         let span = Span { from: 0.0, to: 0.7 };
         let read = |free: f64| {
-            readings(&built, &tape, &start, span, Pace { step: 2.5e-4, ..Pace::even(free) }).expect("it runs")
+            readings(&built, &tape, &start, span, Pace { step: 2.5e-4, ..Pace::even(free) }).expect("it runs").values
         };
         let (short, long) = (read(2.5e-4), read(16e-3));
         let norm = |m: &Measured| if let Measured::Vector(v) = m { v.norm() } else { f64::NAN };
@@ -533,7 +532,9 @@ mod tests {
         let span = Span { from: 0.0, to: 0.7 };
         let fill = |start: &Start| Start { q: vec![0.0; 3], v: vec![0.0; 3], ..start.clone() };
         let read = |free: f64| {
-            readings(&built, &tape, &fill(&start), span, Pace { step: 2.5e-4, ..Pace::even(free) }).expect("it runs")
+            readings(&built, &tape, &fill(&start), span, Pace { step: 2.5e-4, ..Pace::even(free) })
+                .expect("it runs")
+                .values
         };
         let (short, long) = (read(2.5e-4), read(16e-3));
         let (mut off, mut peak) = (0.0_f64, 0.0_f64);

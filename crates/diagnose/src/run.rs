@@ -18,6 +18,7 @@ use crate::linear::{Segment, Stage, Steps};
 use crate::locate::{Located, locate, locate_in, places};
 use crate::lost;
 use crate::noise::{self, Noise};
+use crate::number::short;
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::Pace;
@@ -28,7 +29,7 @@ use crate::stretches::{self, Stretches, cut};
 use crate::tape::{Tape, load};
 use crate::tell;
 use crate::uncertainty::{self, Uncertainty};
-use crate::work::{Watch, Work};
+use crate::work::{Until, Watch, Work};
 use rayon::prelude::*;
 use record::{RecordingSet, Role, Severity};
 use scenario::Scenario;
@@ -72,13 +73,23 @@ pub fn diagnose(
     set: &RecordingSet,
     watch: &dyn Watch,
 ) -> Result<(Diagnosis, Evidence), DiagnoseError> {
+    diagnose_with(scenario, set, (1.0, watch))
+}
+
+/// The same with so much work at most, relative to the usual.
+pub fn diagnose_with(
+    scenario: Scenario,
+    set: &RecordingSet,
+    (effort, watch): (f64, &dyn Watch),
+) -> Result<(Diagnosis, Evidence), DiagnoseError> {
+    let work = Work::new(watch, effort);
     let [first, second] = WINDOWS;
-    let found = diagnose_in(scenario.clone(), set, watch, first)?;
-    if merit(&found.0) >= SETTLED || set.window_s.is_some() {
+    let found = diagnose_in(scenario.clone(), set, &work, first)?;
+    if merit(&found.0) >= SETTLED || set.window_s.is_some() || work.is_spent(Until::Search) {
         return Ok(found);
     }
     watch.step("that explains too little: windows of another length");
-    let other = diagnose_in(scenario, set, watch, second)?;
+    let other = diagnose_in(scenario, set, &work, second)?;
     Ok(if merit(&other.0) > merit(&found.0) { other } else { found })
 }
 
@@ -91,6 +102,9 @@ fn merit(diagnosis: &Diagnosis) -> f64 {
     }
 }
 
+/// What a reader must know of a search that was ended.
+const SPENT: &str = "The search was ended by its limit of work before it had looked at all that promised something; `--effort 4` looks further.";
+
 /// Share of a mismatch with which a search is content.
 const SETTLED: f64 = 0.9;
 
@@ -98,27 +112,34 @@ const SETTLED: f64 = 0.9;
 fn diagnose_in(
     scenario: Scenario,
     set: &RecordingSet,
-    watch: &dyn Watch,
+    work: &Work<'_>,
     parts: f64,
 ) -> Result<(Diagnosis, Evidence), DiagnoseError> {
-    let work = Work::new(watch);
-    let mut clock = Clock { begun: Instant::now(), last: (0.0, 0.0), work: &work, timings: Vec::new() };
+    let mut clock = Clock { begun: Instant::now(), last: (0.0, work.total().simulated), work, timings: Vec::new() };
     clock.stage("inspect the recording", 0.0);
     let inspection = record::inspect::inspect(set);
     refuse_foreign(&inspection)?;
+    let own = scenario.integrator;
     let mut plant = Plant::new(scenario);
     let (tapes, built) = load(&mut plant, set)?;
-    let Begun { tapes, thinned, doubt, window, discretisation, nominal, said } =
+    let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } =
         begin(&plant, (&built, tapes), set, parts, &mut clock)?;
+    if own.kind != plant.scenario.integrator.kind {
+        said.push(format!(
+            "Replays go by Runge–Kutta with steps of their own, not by the scenario's integrator: what that loses at its step of {} s would be \
+             taken for physics.",
+            short(own.step_s)
+        ));
+    }
     let pace = discretisation.pace;
-    let mut stage = Stage { tapes: &thinned, pace, work: &work, doubt };
+    let mut stage = Stage { tapes: &thinned, pace, work, doubt };
     let nominal = doubted(&stage, &plant, nominal)?;
     clock.stage("locate the missing force", 0.15);
     let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
     clock.stage("search", 0.25);
     let Stretches { windows, rungs, whole } = stretches::choose(&stage, &plant, &nominal, window)?;
     let whole = follow(&stage, &plant, EffectSet::default(), &whole)?;
-    watch.step(&format!(
+    work.watch.step(&format!(
         "the nominal model: error {:.3} in windows, {:.3} over whole runs",
         nominal.rms(),
         whole.rms()
@@ -131,6 +152,9 @@ fn diagnose_in(
         Ok(promising(&locate(stage, &plant, now, joints)?, hypotheses(&facts)))
     };
     let (standing, attempts) = search(&mut stage, &plant, standing, &candidates, &LIMITS)?;
+    if work.is_spent(Until::Search) {
+        said.push(SPENT.to_owned());
+    }
     clock.stage("fit to all samples", 0.75);
     let follows = standing.follows();
     let discretisation = suited(&stage, &standing, discretisation);
@@ -139,7 +163,7 @@ fn diagnose_in(
     // What only concerns the nominal model bears its own steps.
     let few = Stage { pace, ..thin };
     let found = fit_to_all((&thin, &stage), &plant, standing)?;
-    watch.step(&format!("error {:.3} of all samples", found.rms()));
+    work.watch.step(&format!("error {:.3} of all samples", found.rms()));
     clock.stage("predict every run", 0.85);
     let judgement = judge((&few, &stage), &plant, ([&nominal, &whole], &found), (window, follows))?;
     let left = left_by((&few, &thin), &plant, (&nominal, &located), &judgement)?;
@@ -339,12 +363,18 @@ struct Clock<'a> {
 impl Clock<'_> {
     /// Ends the last stage and begins one.
     fn stage(&mut self, name: &str, share: f64) {
-        let now = (self.begun.elapsed().as_secs_f64(), self.work.total().1);
+        let total = self.work.total();
+        let now = (self.begun.elapsed().as_secs_f64(), total.simulated);
         if let Some(last) = self.timings.last_mut() {
             (last.wall_s, last.simulated_s) = (now.0 - self.last.0, now.1 - self.last.1);
         }
         let speed = (now.1 - self.last.1) / (now.0 - self.last.0);
-        self.work.watch.step(&format!("{:.1} s simulated, {speed:.0} times real time", now.1 - self.last.1));
+        self.work.watch.step(&format!(
+            "{:.1} s simulated, {speed:.0} times real time; {} replays, {:.1} million evaluations so far",
+            now.1 - self.last.1,
+            total.replays,
+            1e-6 * total.evaluations as f64
+        ));
         self.last = now;
         self.timings.push(evidence::Stage { name: name.to_owned(), wall_s: 0.0, simulated_s: 0.0 });
         self.work.watch.stage(name, share);

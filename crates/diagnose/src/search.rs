@@ -21,6 +21,7 @@ use crate::standing::{Standing, criterion, told};
 use crate::start::count_memory;
 use crate::stretches::STEEP;
 use crate::together::{Ensemble, screen_together};
+use crate::work::Until;
 
 /// What happened to one hypothesis in one round.
 #[derive(Clone, Debug)]
@@ -110,7 +111,8 @@ pub fn search(
     if now.whole.rms() < lost::NEAR && refine(stage, &now) {
         now = now.refit(stage, plant, now.judge().set.clone(), WHOLE)?;
     }
-    while now.judge().is_significant() && now.judge().set.findings().count() < limits.effects {
+    let is_open = |now: &Standing| now.judge().is_significant() && now.judge().set.findings().count() < limits.effects;
+    while is_open(&now) && !stage.work.is_spent(Until::Search) {
         let all = hypotheses(stage, &now.windows)?;
         known.extend(all.iter().cloned());
         let open = all.into_iter().filter_map(|h| still_open(h, &now.judge().set));
@@ -271,14 +273,15 @@ fn refit_best(
         let mut ready = refit_promising(stage, plant, here, (&all, &scores, least), (limits, round), &mut attempts)?;
         // Nor is it left out where what promised enough does not bring it.
         let left = here.excess() - brought_by(here, &ready);
-        if leaves_dear && left > UNEXPLAINED * here.excess() {
+        let may_go_on = !stage.work.is_spent(Until::Search);
+        if leaves_dear && left > UNEXPLAINED * here.excess() && may_go_on {
             let scores = screen_aloud(stage, plant, here, dear)?;
             let further = refit_promising(stage, plant, here, (dear, &scores, least), (limits, round), &mut attempts)?;
             ready.extend(further);
             ready.sort_by(by_criterion);
             all.extend(dear.iter().cloned());
         }
-        if here.excess() - brought_by(here, &ready) > UNEXPLAINED * here.excess() {
+        if here.excess() - brought_by(here, &ready) > UNEXPLAINED * here.excess() && may_go_on {
             let most = limits.effects - here.set.findings().count();
             let sets = screen_together(stage, plant, here, (&all, &scores, most))?;
             ready.extend(refit_together(stage, plant, here, (&all, &sets), &mut attempts));
@@ -334,7 +337,8 @@ fn refit_promising(
         // Beside a refit that leaves next to nothing no valley is looked for either.
         let is_rest = ready.iter().any(|r| r.1.excess() < NEXT_TO_NOTHING * here.excess());
         let is_hopeless = score.score < rival && (!h.has_valleys() || is_rest);
-        if !picked.iter().any(|p| std::ptr::eq(*p, score)) || is_hopeless {
+        let is_spent = !ready.is_empty() && stage.work.is_spent(Until::Search);
+        if !picked.iter().any(|p| std::ptr::eq(*p, score)) || is_hopeless || is_spent {
             continue;
         }
         let Some(start) = possible(stage, plant, here, h, &score.start) else { continue };

@@ -43,7 +43,7 @@ pub fn synthesise(
     let mut plant = Plant::new(scenario);
     let (tapes, built) = load(&mut plant, like)?;
     let own = plant.scenario.integrator.step_s;
-    let work = Work::new(&());
+    let work = Work::new(&(), 1.0);
     let stage = Stage { tapes: &tapes, pace: Pace::even(own), work: &work, doubt: noise::STATED };
     let found = pace::choose(&stage, &built, &cut(&built, &tapes, None, |_| true), own).pace;
     let pace = Pace { step: found.step / FINER, free: found.free / FINER, ..found };

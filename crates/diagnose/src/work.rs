@@ -1,4 +1,4 @@
-//! What a diagnosis is doing: for who waits for it, and for its account of time.
+//! What a diagnosis is doing: for who waits for it, for its account of time, and for its end.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -13,33 +13,113 @@ pub trait Watch: Sync {
 /// Nobody watches.
 impl Watch for () {}
 
-/// Counts of replays, and who watches.
+/// What a search may do, in evaluations of the motion of one body: two to four minutes on two cores.
+const USUAL: f64 = 4e8;
+/// What testing two shapes for contact costs, in such evaluations.
+const QUERY: u64 = 2;
+
+/// Counts of replays, how much may be done, and who watches.
 pub struct Work<'a> {
     replays: AtomicU64,
     microseconds: AtomicU64,
+    evaluations: AtomicU64,
+    limit: u64,
     /// Who hears of it.
     pub watch: &'a dyn Watch,
 }
 
+/// What was done so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Total {
+    /// Replays.
+    pub replays: u64,
+    /// Time that they simulated, s.
+    pub simulated: f64,
+    /// Evaluations of the motion of one body, tests for contact among them.
+    pub evaluations: u64,
+}
+
+/// How far into what may be done something is still begun.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// Looking for further effects.
+    Search,
+    /// Trying whether less does as well.
+    Prune,
+    /// Improving what was found.
+    Fit,
+}
+
+impl Until {
+    fn share(self) -> f64 {
+        match self {
+            Self::Search => 0.7,
+            Self::Prune => 0.85,
+            Self::Fit => 1.0,
+        }
+    }
+}
+
 impl<'a> Work<'a> {
-    /// Nothing done yet.
-    pub fn new(watch: &'a dyn Watch) -> Self {
-        Self { replays: AtomicU64::new(0), microseconds: AtomicU64::new(0), watch }
+    /// Nothing done yet; `effort`: how much may be done, relative to the usual.
+    ///
+    /// The limit is one of counts, not of time: a diagnosis ends alike on any machine, with any number of threads, as long as it is asked for only
+    /// where no replay is under way.
+    pub fn new(watch: &'a dyn Watch, effort: f64) -> Self {
+        Self {
+            replays: AtomicU64::new(0),
+            microseconds: AtomicU64::new(0),
+            evaluations: AtomicU64::new(0),
+            limit: (effort * USUAL) as u64,
+            watch,
+        }
     }
 
-    /// Replays so far, and the time that they simulated, s.
-    pub fn total(&self) -> (u64, f64) {
-        (self.replays.load(Ordering::Relaxed), self.microseconds.load(Ordering::Relaxed) as f64 * 1e-6)
+    /// What was done so far.
+    pub fn total(&self) -> Total {
+        Total {
+            replays: self.replays.load(Ordering::Relaxed),
+            simulated: self.microseconds.load(Ordering::Relaxed) as f64 * 1e-6,
+            evaluations: self.evaluations.load(Ordering::Relaxed),
+        }
     }
 
-    pub(crate) fn add(&self, simulated: f64) {
+    /// Whether so much was done that nothing of a kind is begun any more.
+    pub(crate) fn is_spent(&self, until: Until) -> bool {
+        self.total().evaluations as f64 > until.share() * self.limit as f64
+    }
+
+    /// Adds a replay of a model of so many bodies over a time, s.
+    pub(crate) fn add(&self, simulated: f64, bodies: usize, work: &sim::Work) {
         self.replays.fetch_add(1, Ordering::Relaxed);
         self.microseconds.fetch_add((simulated * 1e6) as u64, Ordering::Relaxed);
+        let evaluations = work.rate_evaluations * bodies as u64 + QUERY * work.contact_queries;
+        self.evaluations.fetch_add(evaluations, Ordering::Relaxed);
     }
 }
 
 impl std::fmt::Debug for Work<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Work").field("total", &self.total()).finish_non_exhaustive()
+        f.debug_struct("Work").field("total", &self.total()).field("limit", &self.limit).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_ends_before_its_fits_do_and_both_by_counts() {
+        let work = Work::new(&(), 1e-6);
+        assert_eq!(work.limit, 400);
+        let of =
+            |rate_evaluations, contact_queries| sim::Work { rate_evaluations, contact_queries, ..Default::default() };
+        work.add(0.5, 7, &of(40, 0));
+        assert!(!work.is_spent(Until::Search));
+        work.add(0.25, 7, &of(0, 10));
+        assert!(work.is_spent(Until::Search) && !work.is_spent(Until::Fit));
+        assert_eq!(work.total(), Total { replays: 2, simulated: 0.75, evaluations: 300 });
+        work.add(0.0, 1, &of(101, 0));
+        assert!(work.is_spent(Until::Fit));
     }
 }
