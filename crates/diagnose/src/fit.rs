@@ -196,13 +196,20 @@ pub struct Effort {
     pub floor: f64,
     /// Whether derivatives by the starts may be those of an earlier fit, as long as they lead downhill.
     pub reuse: bool,
+    /// Damping of its first step.
+    pub damping: f64,
 }
+
+/// Damping where the way may be far and bent: a full step may jump into another valley.
+pub const CAUTIOUS: f64 = 1e-3;
+/// Next to none, where little is left to go: a narrow valley is gone along at once (Gauss–Newton).
+pub const UNDAMPED: f64 = 1e-9;
 
 impl Effort {
     /// For starts alone.
-    pub const STARTS: Self = Self { iterations: 6, share: 1e-3, floor: 0.0, reuse: false };
+    pub const STARTS: Self = Self { iterations: 6, share: 1e-3, floor: 0.0, reuse: false, damping: CAUTIOUS };
     /// For starts that are only judged by.
-    pub const JUDGED: Self = Self { iterations: 5, share: 1e-2, floor: 0.1, reuse: false };
+    pub const JUDGED: Self = Self { iterations: 5, share: 1e-2, floor: 0.1, reuse: false, damping: CAUTIOUS };
 
     /// Fall of a fit's cost that is not worth another linearisation.
     fn enough(&self, fit: &Fit) -> f64 {
@@ -249,7 +256,7 @@ pub fn fit(
         doubt: stage.doubt,
     };
     let mut sizes = first_sizes(&now.set);
-    let mut last = Went { damping: 1e-3, ..Went::default() };
+    let mut last = Went { damping: effort.damping, ..Went::default() };
     let mut most = 0.0f64;
     while now.iterations < effort.iterations && !now.converged {
         if now.iterations > 0 && stage.work.is_spent(Until::Fit) {
@@ -382,10 +389,10 @@ fn iterate(
                 let is_plain = trial == 0 && !was_known;
                 now.converged = !was_blind && is_plain && gained < effort.enough(now);
                 let leads_nowhere = was_known && (trial > 0 || gained < SERVES * promised);
-                return Ok(went((damping * 0.1).max(1e-9), leads_nowhere));
+                return Ok(went((damping * 0.1).max(UNDAMPED), leads_nowhere));
             }
         }
-        damping = (damping * 10.0).max(1e-3);
+        damping = (damping * 10.0).max(CAUTIOUS);
     }
     // No step helps any more: the linear model has no say below the roughness of the cost.
     now.iterations = effort.iterations;

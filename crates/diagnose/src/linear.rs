@@ -9,6 +9,7 @@
 //! H_ss is damped, so that a start that nothing shows stays put, and a bristle that slides already does not run off). Sums of K over segments hold everything that a step of a fit and a score
 //! test need.
 
+use crate::pace::touches;
 use crate::plant::Built;
 use crate::replay::{Pace, Span, readings, residuals_of};
 use crate::start::{Freedom, Start, freedoms};
@@ -113,6 +114,9 @@ const COARSER: f64 = 2.0;
 /// Root mean square by which these may move a residual and still be taken for derivatives, units of noise.
 const ALIKE: f64 = 0.3;
 
+/// Share of that which is always borne.
+const SMOOTH: f64 = 0.1;
+
 /// Everything that replays need beside the segment itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a> {
@@ -139,6 +143,14 @@ impl Stage<'_> {
     /// Where derivatives are taken, and the residuals there; `r` are those of a prediction.
     pub(crate) fn beside(&self, built: &Built, segment: &Segment, r: &DVector<f64>) -> (Self, DVector<f64>) {
         self.beside_within(built, (segment, r), [self.coarser()], ALIKE)
+    }
+
+    /// The same for a fit. Where parts touch coarse steps are rough, not only off, and difference quotients do not tell roughness from change: the
+    /// less is left to explain, the smoother these have to be.
+    fn closely_beside(&self, built: &Built, segment: &Segment, r: &DVector<f64>) -> (Self, DVector<f64>) {
+        let left = (r.norm_squared() / r.len().max(1) as f64 - 1.0).max(0.0).sqrt();
+        let bound = if touches(built) { ALIKE * left.clamp(SMOOTH, 1.0) } else { ALIKE };
+        self.beside_within(built, (segment, r), [self.coarser()], bound)
     }
 
     /// Where derivatives are taken that only lead towards a start: their error has to be small against what is left to reduce.
@@ -323,7 +335,7 @@ impl Stage<'_> {
     ) -> SegmentLinear {
         let all = freedoms(built, &segment.start);
         let r = self.residuals(built, segment);
-        let (coarse, base) = self.beside(built, segment, &r);
+        let (coarse, base) = self.closely_beside(built, segment, &r);
         let of_model = coarse.columns_by(segment, &base, variations, reuse);
         // A flight in which next to nothing of the variations shows has nothing to follow: any columns serve.
         let moved = |(column, v): (&DVector<f64>, &Variation)| v.step * v.step * column.norm_squared();

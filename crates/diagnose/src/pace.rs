@@ -17,7 +17,10 @@ const IN_FLIGHT: f64 = 1e-3;
 /// Flights of at least so many steps are told from one long step; others are not, and may be made by the midpoint rule.
 const LONG: f64 = 3.0;
 /// The same over a whole run.
-const WHOLE_TOLERANCE: f64 = 0.1;
+pub(crate) const WHOLE_TOLERANCE: f64 = 0.1;
+/// The same where numbers are fitted to the end, in standard errors: steps that move n scalars by ε each may move a number by ε √n of them.
+const BIAS: f64 = 3.0;
+const FINAL_TOLERANCE: [f64; 2] = [0.01, WHOLE_TOLERANCE];
 /// Halvings that whole runs may ask for.
 const HALVINGS: i32 = 3;
 /// Halvings of the scenario's own step that are tried beyond it.
@@ -72,7 +75,7 @@ pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) 
 
 /// Steps at which whole runs, which carry errors on for longer than windows do, are as exact: the present ones, in contact and in flight each
 /// halved as often as that takes; and what halving them once more would move, units of noise.
-pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment]) -> Discretisation {
+pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment], tolerance: f64) -> Discretisation {
     let runs: Vec<&Segment> = runs.iter().collect();
     let mut pace = stage.pace;
     let finest = half_times(pace, HALVINGS);
@@ -87,18 +90,24 @@ pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment]) -> Discretisat
         let now = Replayed::new(stage, built, &runs, pace);
         let moved = finer.map(|finer| now.calc_difference(&Replayed::new(stage, built, &runs, finer)));
         let worst = moved[0].max(moved[1]);
-        if worst > WHOLE_TOLERANCE && pace.midpoint {
+        if worst > tolerance && pace.midpoint {
             pace.midpoint = false;
             continue;
         }
-        let is_due = |k: usize| may[k] && moved[k] > 0.5 * WHOLE_TOLERANCE;
-        if worst <= WHOLE_TOLERANCE || !is_due(0) && !is_due(1) {
+        let is_due = |k: usize| may[k] && moved[k] > 0.5 * tolerance;
+        if worst <= tolerance || !is_due(0) && !is_due(1) {
             return Discretisation { pace, worst };
         }
         for finer in (0..2).filter(|k| is_due(*k)).map(|k| finer[k]) {
             pace = Pace { step: pace.step.min(finer.step), free: pace.free.min(finer.free), ..pace };
         }
     }
+}
+
+/// Difference by halved steps, units of noise, that so many scalars bear where numbers are fitted to the end.
+pub(crate) fn tolerance_of(count: usize) -> f64 {
+    let [least, most] = FINAL_TOLERANCE;
+    (BIAS / (count.max(1) as f64).sqrt()).clamp(least, most)
 }
 
 /// Steps halved until halving them once more moves nothing by more than a tolerance, or reaches the finest; and what that moves.

@@ -156,3 +156,22 @@ impl Built {
         self.sensors.iter().find(|(c, ..)| c == channel).map(|(_, gauge, model)| (*gauge, *model))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sim::Integrator as Scheme;
+
+    #[test]
+    fn replays_go_by_runge_kutta_whatever_runs_the_scenario() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/rigs/dock-impact.toml");
+        let load = |set: &[String]| Plant::new(scenario::load(file.as_ref(), set).expect("it is in the repository"));
+        let own = load(&[]);
+        let damped = load(&["integrator.kind=\"implicit-euler\"".to_owned()]);
+        for (plant, finer) in [(&own, 1.0), (&damped, FINER)] {
+            let built = plant.build(&[]).expect("it builds");
+            assert_eq!(built.model.integrator, Scheme::RungeKutta4);
+            assert_eq!(built.model.step, finer * own.scenario.integrator.step_s);
+        }
+    }
+}

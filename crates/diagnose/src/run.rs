@@ -11,7 +11,7 @@ use crate::diagnosis::{Diagnosis, Explained, Verdict};
 use crate::error::DiagnoseError;
 use crate::evidence::{self, Evidence};
 use crate::facts::Facts;
-use crate::fit::{EffectSet, Effort, Fit, fit};
+use crate::fit::{EffectSet, Effort, Fit, UNDAMPED, fit};
 use crate::hypothesis::Hypothesis;
 use crate::judge::{Judgement, judge};
 use crate::linear::{Segment, Stage, Steps};
@@ -310,7 +310,7 @@ fn suited(stage: &Stage<'_>, standing: &Standing, chosen: Discretisation) -> Dis
     if !judged.set.has_findings() || judged.rms() > NEAR {
         return Discretisation { pace: stage.pace, ..chosen };
     }
-    let found = pace::refine(stage, &judged.built, &judged.segments);
+    let found = pace::refine(stage, &judged.built, &judged.segments, pace::tolerance_of(judged.count));
     let Pace { step, free, .. } = found.pace;
     stage
         .work
@@ -348,7 +348,7 @@ fn left_by(
 }
 
 /// The last fit, and what is left to do where there are more samples than it looked at.
-const FINAL: Effort = Effort { iterations: 6, share: 1e-5, floor: 0.02, reuse: true };
+const FINAL: Effort = Effort { iterations: 6, share: 1e-5, floor: 0.02, reuse: true, damping: UNDAMPED };
 const POLISH: Effort = Effort { iterations: 2, ..FINAL };
 /// Samples of a channel of a run that are enough to search by.
 const ENOUGH: usize = 3000;

@@ -8,7 +8,7 @@
 
 use crate::choice::{brought_by, by_criterion, is_enough, put_corrections_first, take_further};
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Effort, Fit, fit};
+use crate::fit::{CAUTIOUS, EffectSet, Effort, Fit, UNDAMPED, fit};
 use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::{Segment, Stage};
 use crate::lost;
@@ -64,9 +64,11 @@ pub struct Limits {
 }
 
 /// Refits of a first look, and of a kept set.
-pub(crate) const LOOK: Effort = Effort { iterations: 6, share: 2e-3, floor: 0.05, reuse: true };
+pub(crate) const LOOK: Effort = Effort { iterations: 6, share: 2e-3, floor: 0.05, reuse: true, damping: CAUTIOUS };
 /// Until it has converged as far as the next round needs it; all samples fit the last set to the end.
-pub(crate) const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, floor: 0.02, reuse: true };
+pub(crate) const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, floor: 0.02, reuse: true, damping: CAUTIOUS };
+/// As far as it goes, where more physics would be looked for in what is left.
+const END: Effort = Effort { iterations: 12, share: 1e-3, floor: 0.02, reuse: false, damping: UNDAMPED };
 /// Promise relative to the best below which a hypothesis is not refitted.
 const PROMISING: f64 = 0.15;
 
@@ -143,6 +145,7 @@ pub fn search(
             true => best.refit_here(stage, plant, set, effort)?,
             false => best,
         };
+        now = to_the_end(stage, plant, now)?;
         let found = now.judge().set.findings().map(|(h, x)| told(h, x)).collect::<Vec<_>>().join("; ");
         stage.work.watch.step(&format!("kept {added}: {}, {found}", errors(&now)));
         // A law that has grown into a plainer one has numbers that would follow what is still left.
@@ -156,6 +159,20 @@ pub fn search(
         attempts = only_screened(stage, plant, &now.windows, hypotheses)?;
     }
     Ok((prune(stage, plant, now)?, attempts))
+}
+
+/// A near standing fitted until it has converged, each time by new derivatives, in steps that suit that: what an unfinished fit leaves, in a narrow
+/// valley, is no sign of other physics.
+fn to_the_end(stage: &mut Stage<'_>, plant: &Plant, now: Standing) -> Result<Standing, DiagnoseError> {
+    let judged = now.judge();
+    if judged.converged || !judged.is_significant() || judged.rms() > lost::NEAR {
+        return Ok(now);
+    }
+    let set = judged.set.clone();
+    stage.pace = pace::refine(stage, &judged.built, &judged.segments, pace::tolerance_of(judged.count)).pace;
+    let tried = now.refit_here(stage, plant, set, END)?;
+    stage.work.watch.step(&format!("to the end: {}", errors(&tried)));
+    Ok(if tried.is_better(&now) { tried } else { now })
 }
 
 /// A hypothesis that may act beside a set: none of its members, and of the numbers that have a tolerance one that stands at its end.
@@ -204,7 +221,7 @@ fn refine(stage: &mut Stage<'_>, standing: &Standing) -> bool {
     stage.pace = no_coarser(stage, built, &standing.windows.segments);
     let mut worst = None;
     if standing.whole.rms() < lost::NEAR && standing.whole.is_significant() {
-        let found = pace::refine(stage, built, &standing.whole.segments);
+        let found = pace::refine(stage, built, &standing.whole.segments, pace::WHOLE_TOLERANCE);
         (stage.pace, worst) = (found.pace, Some(found.worst));
     }
     let is_finer = stage.pace != before;
@@ -472,7 +489,7 @@ fn possible(stage: &Stage<'_>, plant: &Plant, now: &Fit, h: &Hypothesis, promise
 
 /// One in so many segments tells how near what remembers may begin, and how far its starts are fitted for that.
 const FEW: usize = 3;
-const BRIEF: Effort = Effort { iterations: 2, share: 1e-2, floor: 0.0, reuse: false };
+const BRIEF: Effort = Effort { iterations: 2, share: 1e-2, floor: 0.0, reuse: false, damping: CAUTIOUS };
 /// Halvings of a promise.
 const SHARES: i32 = 5;
 

@@ -210,13 +210,13 @@ fn located(findings: &Findings, stage: &Stage<'_>, features: &Features) -> Vec<L
     };
     let by_force = || {
         let all = &findings.located;
-        let mut places: Vec<(String, f64)> =
-            all.ranked().into_iter().take(4).map(|p| (all.places[p].name.clone(), all.share(p))).collect();
-        // A free force on a body fits what a contact does to it as well: where both do, the place that the search preferred comes first.
-        let preferred = findings.attempts.iter().find(|a| a.kept).map(|a| a.place.as_str());
-        let is_preferred = |name: &str| preferred == Some(name);
-        let weight = |p: &(String, f64)| p.1 + if is_preferred(&p.0) { TIE } else { 0.0 };
-        places.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+        let order = all.ranked();
+        let most = order.first().map_or(0.0, |p| all.share(*p));
+        // A free force on a body fits what a contact or a joint does to it as well: of places that do alike, the one with fewer freedoms comes first.
+        let (mut alike, others): (Vec<usize>, Vec<usize>) = order.iter().partition(|p| all.share(**p) > most - TIE);
+        alike.sort_by_key(|p| all.rank(*p));
+        let places = alike.into_iter().chain(others).take(TOLD);
+        let places: Vec<(String, f64)> = places.map(|p| (all.places[p].name.clone(), all.share(p))).collect();
         places
     };
     match findings.verdict {
@@ -242,7 +242,9 @@ fn located(findings: &Findings, stage: &Stage<'_>, features: &Features) -> Vec<L
 }
 
 /// Difference of shares that does not tell places apart.
-const TIE: f64 = 0.1;
+const TIE: f64 = 0.03;
+/// Places of what has no name that are told.
+const TOLD: usize = 4;
 
 fn condition_of(place: &str) -> &'static str {
     if place.starts_with("contact:") { "in contact" } else { "always" }
