@@ -1,10 +1,12 @@
 //! Which of some refits is taken: the order in which they go on to whole runs, and what is preferred there.
 
+use crate::attempt::Attempt;
 use crate::error::DiagnoseError;
 use crate::fit::Fit;
 use crate::linear::Stage;
 use crate::plant::Plant;
-use crate::search::{Attempt, LOOK, UNEXPLAINED, errors, no_coarser};
+use crate::refits::Refit;
+use crate::search::{LOOK, UNEXPLAINED, errors, no_coarser};
 use crate::standing::{Standing, criterion};
 use crate::work::Until;
 
@@ -19,12 +21,12 @@ pub(crate) fn take_further(
     stage: &Stage<'_>,
     plant: &Plant,
     now: &Standing,
-    (is_window, ready): (bool, Vec<(usize, Fit)>),
+    (is_window, ready): (bool, Vec<Refit>),
     (mut best, attempts): (Option<Standing>, &mut [Attempt]),
 ) -> Result<Option<Standing>, DiagnoseError> {
     let here = if is_window { &now.windows } else { &now.whole };
     let most = brought_by(here, &ready);
-    for (at, tried) in ready {
+    for Refit { attempt: at, fit: tried } in ready {
         let is_enough = |b: &Standing| is_done(now, b) || stage.work.is_spent(Until::Search);
         if best.as_ref().is_some_and(is_enough) || here.cost - tried.cost < NEARLY * most {
             continue;
@@ -51,22 +53,22 @@ pub(crate) fn take_further(
 }
 
 /// The order of refits, best first.
-pub(crate) fn by_criterion(a: &(usize, Fit), b: &(usize, Fit)) -> std::cmp::Ordering {
-    criterion(&a.1).total_cmp(&criterion(&b.1))
+pub(crate) fn by_criterion(a: &Refit, b: &Refit) -> std::cmp::Ordering {
+    criterion(&a.fit).total_cmp(&criterion(&b.fit))
 }
 
 /// Beside what was found already a number that is slightly off is likelier than more physics.
-pub(crate) fn put_corrections_first(here: &Fit, ready: &mut [(usize, Fit)]) {
-    let enough = ready.first().map_or(0.0, |r| criterion(&r.1)) + CORRECTION * brought_by(here, ready);
-    let is_correction = |r: &(usize, Fit)| r.1.set.ends_with_correction() && criterion(&r.1) < enough;
+pub(crate) fn put_corrections_first(here: &Fit, ready: &mut [Refit]) {
+    let enough = ready.first().map_or(0.0, |r| criterion(&r.fit)) + CORRECTION * brought_by(here, ready);
+    let is_correction = |r: &Refit| r.fit.set.ends_with_correction() && criterion(&r.fit) < enough;
     if let Some(at) = ready.iter().position(is_correction).filter(|_| here.set.has_findings()) {
         ready[..=at].rotate_right(1);
     }
 }
 
 /// The largest fall of the cost by a refit.
-pub(crate) fn brought_by(here: &Fit, ready: &[(usize, Fit)]) -> f64 {
-    ready.iter().map(|r| here.cost - r.1.cost).fold(0.0, f64::max)
+pub(crate) fn brought_by(here: &Fit, ready: &[Refit]) -> f64 {
+    ready.iter().map(|r| here.cost - r.fit.cost).fold(0.0, f64::max)
 }
 
 /// Whether what one standing does more than another that corrects a nominal number is too little for more physics beside what was found.

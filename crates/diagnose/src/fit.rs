@@ -334,7 +334,7 @@ fn iterate(
     plant: &Plant,
     now: &mut Fit,
     sizes: &mut [f64],
-    (mut damping, effort): (f64, Effort),
+    (damping, effort): (f64, Effort),
 ) -> Result<Went, DiagnoseError> {
     let slots = now.set.slots();
     let variations = vary(plant, &now.set, &slots, sizes)?;
@@ -368,35 +368,63 @@ fn iterate(
         now.converged = !was_blind;
         return Ok(went(damping, false));
     }
+    let at_hand = Derivatives { slots: &slots, linear: &linear, promised, was_known };
+    let Some((damping, wants_fresh)) = descend((stage, plant), now, &at_hand, (damping, effort, was_blind)) else {
+        // No step helps any more: the linear model has no say below the roughness of the cost.
+        now.iterations = effort.iterations;
+        return Ok(went(damping, false));
+    };
+    Ok(went(damping, wants_fresh))
+}
+
+/// What an iteration knows of the way down.
+struct Derivatives<'a> {
+    /// The fitted coordinates.
+    slots: &'a [(usize, usize)],
+    /// The segments about their starts.
+    linear: &'a [SegmentLinear],
+    /// Fall of the cost that they promise.
+    promised: f64,
+    /// Whether the starts' columns are those of an earlier model.
+    was_known: bool,
+}
+
+/// The first of more and more damped steps that lowers the cost; the damping to go on with, and whether new derivatives are wanted for that. None
+/// where no step does.
+fn descend(
+    (stage, plant): (&Stage<'_>, &Plant),
+    now: &mut Fit,
+    at_hand: &Derivatives<'_>,
+    (mut damping, effort, was_blind): (f64, Effort, bool),
+) -> Option<(f64, bool)> {
+    let Derivatives { slots, linear, promised, was_known } = *at_hand;
+    let n = slots.len();
     for trial in 0..DAMPINGS {
         if trial == 2 && was_known {
-            return Ok(went(damping, true));
+            return Some((damping, true));
         }
         let linear: Vec<SegmentLinear> = linear.iter().map(|l| l.damped(damping)).collect();
         let mut k = sum_reduced(&linear);
         now.set.add_prior(&mut k);
         let (a, b) = (k.view((0, 0), (n, n)).into_owned(), k.view((0, n), (n, 1)).into_owned());
         let theta = step(&a, &b, damping);
-        let set = now.set.moved(&slots, theta.as_slice());
+        let set = now.set.moved(slots, theta.as_slice());
         let actual: Vec<f64> = slots.iter().map(|(m, c)| set.members[*m].1[*c] - now.set.members[*m].1[*c]).collect();
         if let Ok(built) = plant.build(&set.effects()) {
             let (segments, cost) = stage.follow(&built, &now.segments, &linear, &actual);
-            let prior = set.prior_cost() - now.set.prior_cost();
-            if cost + prior < now.cost {
-                let gained = now.cost - cost - prior;
+            let gained = now.cost - cost - (set.prior_cost() - now.set.prior_cost());
+            if gained > 0.0 {
                 (now.set, now.built, now.segments, now.cost) = (set, built, segments, cost);
                 // A step that had to be shortened says nothing about the end of the way, nor does one along old derivatives.
                 let is_plain = trial == 0 && !was_known;
                 now.converged = !was_blind && is_plain && gained < effort.enough(now);
                 let leads_nowhere = was_known && (trial > 0 || gained < SERVES * promised);
-                return Ok(went((damping * 0.1).max(UNDAMPED), leads_nowhere));
+                return Some(((damping * 0.1).max(UNDAMPED), leads_nowhere));
             }
         }
         damping = (damping * 10.0).max(CAUTIOUS);
     }
-    // No step helps any more: the linear model has no say below the roughness of the cost.
-    now.iterations = effort.iterations;
-    Ok(went(damping, false))
+    None
 }
 
 /// Longest step of a difference quotient, in widths of the coordinate's range, and what is left of one that leads nowhere.

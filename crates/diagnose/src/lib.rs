@@ -7,6 +7,7 @@
 //! of [`summary_text`] and the scenario of [`patched_toml`]. [`score`] judges diagnoses against answer keys.
 
 mod approaches;
+pub mod attempt;
 pub mod catalogue;
 mod choice;
 mod condition;
@@ -32,6 +33,7 @@ mod parsimony;
 mod patched;
 pub mod plant;
 pub mod reading;
+mod refits;
 pub mod replay;
 pub mod report;
 pub mod run;

@@ -21,6 +21,8 @@ pub(crate) const WHOLE_TOLERANCE: f64 = 0.1;
 /// The same where numbers are fitted to the end, in standard errors: steps that move n scalars by ε each may move a number by ε √n of them.
 const BIAS: f64 = 3.0;
 const FINAL_TOLERANCE: [f64; 2] = [0.01, WHOLE_TOLERANCE];
+/// Share of the difference that a halved step leaves at most where steps of some order converge.
+const FADING: f64 = 0.7;
 /// Halvings that whole runs may ask for.
 const HALVINGS: i32 = 3;
 /// Halvings of the scenario's own step that are tried beyond it.
@@ -79,6 +81,7 @@ pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment], tolerance: f64
     let runs: Vec<&Segment> = runs.iter().collect();
     let mut pace = stage.pace;
     let finest = half_times(pace, HALVINGS);
+    let mut before = Discretisation { pace, worst: f64::INFINITY };
     loop {
         let Pace { step, free, .. } = pace;
         // Where flights have no steps of their own, both are one.
@@ -94,6 +97,11 @@ pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment], tolerance: f64
             pace.midpoint = false;
             continue;
         }
+        // Where halving no longer tells less, what it tells is the roughness of touches, which no step ends.
+        if worst <= WHOLE_TOLERANCE && before.worst <= WHOLE_TOLERANCE && worst > FADING * before.worst {
+            return before;
+        }
+        before = Discretisation { pace, worst };
         let is_due = |k: usize| may[k] && moved[k] > 0.5 * tolerance;
         if worst <= tolerance || !is_due(0) && !is_due(1) {
             return Discretisation { pace, worst };

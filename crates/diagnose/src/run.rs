@@ -5,6 +5,7 @@
 //! 3. missing forces say where, the search says what, first in windows, then over whole runs where these follow;
 //! 4. every run, held-out ones too, is predicted by the nominal and by the corrected model.
 
+use crate::attempt::Attempt;
 use crate::catalogue::{self, hypotheses};
 use crate::curves;
 use crate::diagnosis::{Diagnosis, Explained, Verdict};
@@ -22,7 +23,7 @@ use crate::number::short;
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::Pace;
-use crate::search::{Attempt, Limits, WHOLE, errors, search};
+use crate::search::{Limits, WHOLE, errors, search};
 use crate::share;
 use crate::standing::{Standing, fit_in_turns, follow};
 use crate::stretches::{self, Stretches, cut};

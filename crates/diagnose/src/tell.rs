@@ -190,7 +190,7 @@ fn slides(built: &crate::plant::Built, place: &str) -> bool {
 /// Hypotheses whose refit came near the chosen one's in the round in which it was chosen; near that of the whole set where several were chosen
 /// together.
 fn rivals(findings: &Findings, chosen: &Member) -> Vec<Rival> {
-    let is_chosen = |a: &crate::search::Attempt| a.kept && a.name == chosen.name && a.place == chosen.place;
+    let is_chosen = |a: &crate::attempt::Attempt| a.kept && a.name == chosen.name && a.place == chosen.place;
     let Some(own) = findings.attempts.iter().find(|a| is_chosen(a)) else { return Vec::new() };
     let Some(gain) = own.together.or(own.gain) else { return Vec::new() };
     let same_round = findings.attempts.iter().filter(|a| a.round == own.round && !is_chosen(a));
@@ -279,7 +279,7 @@ pub(crate) fn role(role: record::Role) -> Role {
 /// What the first screen's information matrices say, the most promising first.
 fn identifiability(findings: &Findings) -> Vec<Identifiable> {
     let first = findings.attempts.iter().filter(|a| a.round == 0);
-    let of = |a: &crate::search::Attempt| {
+    let of = |a: &crate::attempt::Attempt| {
         let remark = match a.shown.condition {
             _ if a.shown.errors.iter().all(|e| e.1.is_infinite()) => "these recordings cannot show it",
             condition if condition > RIDGE => "only combinations of its parameters show",
@@ -319,10 +319,10 @@ const RIDGE: f64 = 1e4;
 
 fn ranking(findings: &Findings) -> Vec<Hypothesis> {
     let near: Vec<Rival> = findings.found.set.findings().flat_map(|(h, _)| rivals(findings, h)).collect();
-    let is_rival = |a: &crate::search::Attempt| near.iter().any(|r| r.name == a.name && r.place == a.place);
+    let is_rival = |a: &crate::attempt::Attempt| near.iter().any(|r| r.name == a.name && r.place == a.place);
     let held_back = nan_unless_finite(fall_of(findings) - findings.uncertainty.optimism);
     let nan = |x: Option<f64>| x.map_or(f64::NAN, nan_unless_finite);
-    let of = |a: &crate::search::Attempt| Hypothesis {
+    let of = |a: &crate::attempt::Attempt| Hypothesis {
         name: a.name.clone(),
         place: a.place.clone(),
         screen_score: a.score,
@@ -339,7 +339,7 @@ fn ranking(findings: &Findings) -> Vec<Hypothesis> {
         },
         why: format!("round {}", a.round + 1),
     };
-    let worth = |a: &&crate::search::Attempt| a.fall.is_some() || a.share > 0.01;
+    let worth = |a: &&crate::attempt::Attempt| a.fall.is_some() || a.share > 0.01;
     let mut all: Vec<Hypothesis> = findings.attempts.iter().filter(worth).map(of).collect();
     all.sort_by_key(|h| h.status);
     all
