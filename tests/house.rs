@@ -75,6 +75,41 @@ fn no_file_is_longer_than_the_wall() {
     }
 }
 
+/// Lines of a function in `src`, its signature among them.
+const LONGEST_FUNCTION: usize = 60;
+
+#[test]
+fn no_function_is_longer_than_a_page() {
+    let mut files = Vec::new();
+    sources(&root().join("crates"), &mut files);
+    files.retain(|f| f.components().any(|c| c.as_os_str() == "src"));
+    let mut seen = 0;
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        for (at, line) in lines.iter().enumerate() {
+            let code = line.trim_start();
+            let is_function = ["fn ", "pub fn ", "pub(crate) fn ", "pub(super) fn ", "const fn ", "pub const fn "];
+            if !is_function.iter().any(|f| code.starts_with(f)) {
+                continue;
+            }
+            seen += 1;
+            let margin = " ".repeat(line.len() - code.len());
+            // A body ends by a brace at the margin, what a trait only declares by a semicolon there.
+            let is_end = |l: &&str| match l.strip_prefix(&margin) {
+                Some("}") => true,
+                Some(rest) => rest.starts_with(')') && rest.ends_with(';'),
+                None => false,
+            };
+            let is_one_line = line.ends_with('}') || line.ends_with(';');
+            let length =
+                if is_one_line { 1 } else { 1 + lines[at..].iter().position(|l| is_end(&l)).unwrap_or(lines.len()) };
+            assert!(length <= LONGEST_FUNCTION, "{}:{}: {length} lines", file.display(), at + 1);
+        }
+    }
+    assert!(seen > 500, "only {seen} functions were seen");
+}
+
 #[test]
 fn the_top_level_is_bare() {
     let allowed = [

@@ -1,10 +1,10 @@
 //! Prediction errors: every run, free and in windows, under the nominal and the corrected model, each with its own starts.
 
 use crate::error::DiagnoseError;
-use crate::fit::{Effort, Fit, fit};
+use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::linear::{Segment, Stage};
 use crate::lost;
-use crate::plant::Plant;
+use crate::plant::{Built, Plant};
 use crate::standing::follow_with;
 use crate::stretches::{cut, joined};
 use crate::tape::Tape;
@@ -59,72 +59,120 @@ pub fn judge(
         residuals: fit.segments.par_iter().map(|s| all.residuals(&fit.built, s)).collect(),
         fit,
     };
-    let is_last = |known: &Fit| known.set.members.len() == found.set.members.len();
-    let of = |known: &Fit| -> Result<(Prediction, Prediction), DiagnoseError> {
-        let stage = &Stage { pace: if is_last(known) { all.pace } else { few.pace }, ..*few };
+    let of = |[known, runs]: [&Fit; 2]| -> Result<[Prediction; 2], DiagnoseError> {
+        let is_last = known.set.members.len() == found.set.members.len();
+        let stage = Stage { pace: if is_last { all.pace } else { few.pace }, ..*few };
         let set = known.set.frozen();
         let built = plant.build(&set.effects())?;
-        // What a wrong model is off by takes no more exact starts.
-        let model = if is_last(known) { "corrected" } else { "nominal" };
-        let say =
-            |what: &str, fit: &Fit| stage.work.watch.step(&format!("{model} model, {what}: error {:.3}", fit.rms()));
-        let effort = if is_last(known) { Effort::JUDGED } else { Effort { iterations: GLANCES, ..Effort::JUDGED } };
-        let mut windows = cut(&built, stage.tapes, Some(window), |_| true);
-        begin_from(stage, &mut windows, &known.segments);
-        let first = |windows: &[Segment]| joined(windows, stage.tapes);
-        let of_runs = if is_last(known) { found } else { nominal[1] };
-        let restarted = |windows: Vec<Segment>| -> Result<Fit, DiagnoseError> {
-            let windowed = fit(stage, plant, set.clone(), windows, effort)?;
-            say("windows", &windowed);
-            let is_plausible = || windowed.rms() < PLAUSIBLE || lost::calc_poor_share(stage, &windowed) <= lost::FEW;
-            if !is_last(known) || !is_plausible() {
-                return Ok(windowed);
-            }
-            let anew = stage.begun_anew(&built, &windowed.segments, (Effort::JUDGED, lost::POOR_WINDOW));
-            fit(stage, plant, set.clone(), anew, Effort { iterations: 0, ..Effort::JUDGED })
-        };
-        if !follows {
-            // Where whole runs go astray their starts are found in windows, if anywhere.
-            let windowed = restarted(windows)?;
-            let mut runs = first(&windowed.segments);
-            if !is_last(known) {
-                begin_from(stage, &mut runs, &of_runs.segments);
-            }
-            say("windows, begun anew", &windowed);
-            let whole = follow_with(stage, plant, set.clone(), &runs, effort)?;
-            say("whole runs", &whole);
-            return Ok((predict(windowed), predict(whole)));
-        }
-        let mut runs = first(&windows);
-        begin_from(stage, &mut runs, &of_runs.segments);
-        let mut whole = follow_with(stage, plant, set.clone(), &runs, effort)?;
-        say("whole runs", &whole);
-        // Where the model that was found is near, single runs that are far off stand in wrong valleys.
-        if is_last(known) && known.rms() < PLAUSIBLE {
-            let anew = stage.begun_anew(&built, &whole.segments, (Effort::JUDGED, lost::POOR_RUN));
-            whole = fit(stage, plant, set.clone(), anew, Effort { iterations: 1, ..Effort::JUDGED })?;
-        }
-        say("whole runs, begun anew", &whole);
-        let near = |whole: &Fit| -> Vec<Segment> {
-            whole.segments.iter().filter(|s| lost::is_near(stage, &built, s)).cloned().collect()
-        };
-        let followed = near(&whole);
-        stage.along(&built, &followed, &mut windows);
-        let mut windowed = restarted(windows)?;
-        say("windows, begun anew", &windowed);
-        if whole.rms() >= lost::NEAR && is_last(known) {
-            whole = follow_with(stage, plant, set.clone(), &first(&windowed.segments), effort)?;
-            let found = near(&whole);
-            if found.len() > followed.len() {
-                stage.along(&built, &found, &mut windowed.segments);
-                windowed = fit(stage, plant, set.clone(), windowed.segments, Effort::JUDGED)?;
-            }
-        }
-        Ok((predict(windowed), predict(whole)))
+        let runs = if is_last { found } else { runs };
+        let model = Candidate { stage, plant, set, built, is_last, known, runs };
+        let starts = if follows { model.starts_along_runs(window)? } else { model.starts_in_windows(window)? };
+        Ok(starts.map(predict))
     };
-    let before = of(nominal[0])?;
-    let after = if found.set.members.is_empty() { before.clone() } else { of(found)? };
-    Ok(Judgement { windowed: [before.0, after.0], whole: [before.1, after.1] })
+    let [windows_before, runs_before] = of(nominal)?;
+    let [windows_after, runs_after] = match found.set.members.is_empty() {
+        true => [windows_before.clone(), runs_before.clone()],
+        false => of([found, found])?,
+    };
+    Ok(Judgement { windowed: [windows_before, windows_after], whole: [runs_before, runs_after] })
+}
+
+/// A model whose starts are estimated to judge it.
+struct Candidate<'a> {
+    stage: Stage<'a>,
+    plant: &'a Plant,
+    /// Its effects, no number free.
+    set: EffectSet,
+    built: Built,
+    /// Whether it is the corrected one.
+    is_last: bool,
+    /// The fit whose windows are known, and that whose whole runs are.
+    known: &'a Fit,
+    runs: &'a Fit,
+}
+
+impl Candidate<'_> {
+    fn say(&self, what: &str, fit: &Fit) {
+        let model = if self.is_last { "corrected" } else { "nominal" };
+        self.stage.work.watch.step(&format!("{model} model, {what}: error {:.3}", fit.rms()));
+    }
+
+    /// What a wrong model is off by takes no more exact starts.
+    fn effort(&self) -> Effort {
+        if self.is_last { Effort::JUDGED } else { Effort { iterations: GLANCES, ..Effort::JUDGED } }
+    }
+
+    fn fit(&self, segments: Vec<Segment>, effort: Effort) -> Result<Fit, DiagnoseError> {
+        fit(&self.stage, self.plant, self.set.clone(), segments, effort)
+    }
+
+    fn follow(&self, runs: &[Segment]) -> Result<Fit, DiagnoseError> {
+        follow_with(&self.stage, self.plant, self.set.clone(), runs, self.effort())
+    }
+
+    /// Windows of every run, from the starts that are known.
+    fn windows(&self, window: f64) -> Vec<Segment> {
+        let mut windows = cut(&self.built, self.stage.tapes, Some(window), |_| true);
+        begin_from(&self.stage, &mut windows, &self.known.segments);
+        windows
+    }
+
+    /// Windows with their starts fitted, of the corrected model also those that stand in wrong valleys.
+    fn fit_windows(&self, windows: Vec<Segment>) -> Result<Fit, DiagnoseError> {
+        let mut windowed = self.fit(windows, self.effort())?;
+        self.say("windows", &windowed);
+        let is_plausible = || windowed.rms() < PLAUSIBLE || lost::calc_poor_share(&self.stage, &windowed) <= lost::FEW;
+        if self.is_last && is_plausible() {
+            let anew = self.stage.begun_anew(&self.built, &windowed.segments, (Effort::JUDGED, lost::POOR_WINDOW));
+            windowed = self.fit(anew, Effort { iterations: 0, ..Effort::JUDGED })?;
+        }
+        self.say("windows, begun anew", &windowed);
+        Ok(windowed)
+    }
+
+    /// In windows and over whole runs, where these go astray: their starts are found in windows, if anywhere.
+    fn starts_in_windows(&self, window: f64) -> Result<[Fit; 2], DiagnoseError> {
+        let windowed = self.fit_windows(self.windows(window))?;
+        let mut runs = joined(&windowed.segments, self.stage.tapes);
+        if !self.is_last {
+            begin_from(&self.stage, &mut runs, &self.runs.segments);
+        }
+        let whole = self.follow(&runs)?;
+        self.say("whole runs", &whole);
+        Ok([windowed, whole])
+    }
+
+    /// In windows and over whole runs, where these are followed: windows begin where the run is then.
+    fn starts_along_runs(&self, window: f64) -> Result<[Fit; 2], DiagnoseError> {
+        let mut windows = self.windows(window);
+        let mut runs = joined(&windows, self.stage.tapes);
+        begin_from(&self.stage, &mut runs, &self.runs.segments);
+        let mut whole = self.follow(&runs)?;
+        self.say("whole runs", &whole);
+        // Where the model that was found is near, single runs that are far off stand in wrong valleys.
+        if self.is_last && self.known.rms() < PLAUSIBLE {
+            let anew = self.stage.begun_anew(&self.built, &whole.segments, (Effort::JUDGED, lost::POOR_RUN));
+            whole = self.fit(anew, Effort { iterations: 1, ..Effort::JUDGED })?;
+        }
+        self.say("whole runs, begun anew", &whole);
+        let followed = self.near(&whole);
+        self.stage.along(&self.built, &followed, &mut windows);
+        let mut windowed = self.fit_windows(windows)?;
+        if whole.rms() >= lost::NEAR && self.is_last {
+            whole = self.follow(&joined(&windowed.segments, self.stage.tapes))?;
+            let found = self.near(&whole);
+            if found.len() > followed.len() {
+                self.stage.along(&self.built, &found, &mut windowed.segments);
+                windowed = self.fit(windowed.segments, Effort::JUDGED)?;
+            }
+        }
+        Ok([windowed, whole])
+    }
+
+    /// The runs that are followed.
+    fn near(&self, whole: &Fit) -> Vec<Segment> {
+        whole.segments.iter().filter(|s| lost::is_near(&self.stage, &self.built, s)).cloned().collect()
+    }
 }
 
 /// Linearisations of the starts of a model that is known to be wrong.

@@ -34,6 +34,7 @@ use crate::work::{Until, Watch, Work};
 use rayon::prelude::*;
 use record::{RecordingSet, Role, Severity};
 use scenario::Scenario;
+use scenario::spec::Integrator;
 use std::time::Instant;
 
 /// What the search left to judge and to tell.
@@ -85,8 +86,13 @@ pub fn diagnose_with(
 ) -> Result<(Diagnosis, Evidence), DiagnoseError> {
     let work = Work::new(watch, effort);
     let [first, second] = WINDOWS;
-    let found = diagnose_in(scenario.clone(), set, &work, first)?;
-    if merit(&found.0) >= SETTLED || set.window_s.is_some() || work.is_spent(Until::Search) {
+    let mut found = diagnose_in(scenario.clone(), set, &work, first)?;
+    if merit(&found.0) >= SETTLED || set.window_s.is_some() {
+        return Ok(found);
+    }
+    let is_told = work.was_ended();
+    if work.is_spent(Until::Search) {
+        found.0.remarks.extend((!is_told).then(|| SPENT.to_owned()));
         return Ok(found);
     }
     watch.step("that explains too little: windows of another length");
@@ -125,37 +131,11 @@ fn diagnose_in(
     let (tapes, built) = load(&mut plant, set)?;
     let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } =
         begin(&plant, (&built, tapes), set, parts, &mut clock)?;
-    if own.kind != plant.scenario.integrator.kind {
-        said.push(format!(
-            "Replays go by Runge–Kutta with steps of their own, not by the scenario's integrator: what that loses at its step of {} s would be \
-             taken for physics.",
-            short(own.step_s)
-        ));
-    }
+    said.extend(said_of_scheme(own, &plant));
     let pace = discretisation.pace;
     let mut stage = Stage { tapes: &thinned, pace, work, doubt };
-    let nominal = doubted(&stage, &plant, nominal)?;
-    clock.stage("locate the missing force", 0.15);
-    let located = locate(&stage, &plant, &nominal, places(&Facts::new(&nominal.built, &tapes), window))?;
-    clock.stage("search", 0.25);
-    let Stretches { windows, rungs, whole } = stretches::choose(&stage, &plant, &nominal, window)?;
-    let whole = follow(&stage, &plant, EffectSet::default(), &whole)?;
-    work.watch.step(&format!(
-        "the nominal model: error {:.3} in windows, {:.3} over whole runs",
-        nominal.rms(),
-        whole.rms()
-    ));
-    let standing = loosened(&stage, &plant, Standing::new(&stage, windows, whole.clone(), rungs))?;
-    let own_parts = Facts::new(&nominal.built, &tapes);
-    let candidates = |stage: &Stage<'_>, now: &Fit| {
-        let facts = Facts::new(&now.built, &tapes).of_parts(&own_parts);
-        let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
-        Ok(promising(&locate(stage, &plant, now, joints)?, hypotheses(&facts)))
-    };
-    let (standing, attempts) = search(&mut stage, &plant, standing, &candidates, &LIMITS)?;
-    if work.is_spent(Until::Search) {
-        said.push(SPENT.to_owned());
-    }
+    let Sought { nominal, whole, located, standing, attempts } =
+        seek(&mut stage, &plant, (nominal, &tapes, window), &mut clock)?;
     clock.stage("fit to all samples", 0.75);
     let follows = standing.follows();
     let discretisation = suited(&stage, &standing, discretisation);
@@ -165,17 +145,16 @@ fn diagnose_in(
     let few = Stage { pace, ..thin };
     let found = fit_to_all((&thin, &stage), &plant, standing)?;
     work.watch.step(&format!("error {:.3} of all samples", found.rms()));
+    if work.was_ended() {
+        said.push(SPENT.to_owned());
+    }
     clock.stage("predict every run", 0.85);
     let judgement = judge((&few, &stage), &plant, ([&nominal, &whole], &found), (window, follows))?;
     let left = left_by((&few, &thin), &plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
     let (explained, helps) = share::explained(&judgement, &tapes, &found, window);
     let verdict = verdict(&judgement, &found, (follows, helps));
-    // What helps nowhere is not told, nor how sure its numbers are.
-    let uncertainty = match verdict {
-        Verdict::Unknown => Uncertainty { covariance: found.covariance.clone(), ..Uncertainty::default() },
-        _ => uncertainty::estimate(&stage, &plant, &found)?,
-    };
+    let uncertainty = how_sure(&stage, &plant, &found, verdict)?;
     clock.stage("write", 1.0);
     let findings = Findings {
         title: set.title.clone(),
@@ -195,6 +174,64 @@ fn diagnose_in(
         discretisation,
     };
     Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
+}
+
+/// How sure the numbers are; what helps nowhere is not told, nor how sure its numbers are.
+fn how_sure(stage: &Stage<'_>, plant: &Plant, found: &Fit, verdict: Verdict) -> Result<Uncertainty, DiagnoseError> {
+    match verdict {
+        Verdict::Unknown => Ok(Uncertainty { covariance: found.covariance.clone(), ..Uncertainty::default() }),
+        Verdict::NoMismatch | Verdict::Explained | Verdict::PartlyExplained => {
+            uncertainty::estimate(stage, plant, found)
+        }
+    }
+}
+
+/// That replays do not go by the scenario's own scheme, where they do not.
+fn said_of_scheme(own: Integrator, plant: &Plant) -> Option<String> {
+    (own.kind != plant.scenario.integrator.kind).then(|| {
+        format!(
+            "Replays go by Runge–Kutta with steps of their own, not by the scenario's integrator: what that loses at its step of {} s would be \
+             taken for physics.",
+            short(own.step_s)
+        )
+    })
+}
+
+/// What a search has found, and beside what.
+struct Sought {
+    /// The nominal model in windows, and over whole runs.
+    nominal: Fit,
+    whole: Fit,
+    /// Where forces are missing beside it.
+    located: Located,
+    standing: Standing,
+    attempts: Vec<Attempt>,
+}
+
+/// Says where forces are missing and searches for what they are; the stage is left at the pace that this took.
+fn seek(
+    stage: &mut Stage<'_>,
+    plant: &Plant,
+    (nominal, tapes, window): (Fit, &[Tape], f64),
+    clock: &mut Clock<'_>,
+) -> Result<Sought, DiagnoseError> {
+    let nominal = doubted(stage, plant, nominal)?;
+    clock.stage("locate the missing force", 0.15);
+    let own_parts = Facts::new(&nominal.built, tapes);
+    let located = locate(stage, plant, &nominal, places(&own_parts, window))?;
+    clock.stage("search", 0.25);
+    let Stretches { windows, rungs, whole } = stretches::choose(stage, plant, &nominal, window)?;
+    let whole = follow(stage, plant, EffectSet::default(), &whole)?;
+    let [short, long] = [nominal.rms(), whole.rms()];
+    stage.work.watch.step(&format!("the nominal model: error {short:.3} in windows, {long:.3} over whole runs"));
+    let standing = loosened(stage, plant, Standing::new(stage, windows, whole.clone(), rungs))?;
+    let candidates = |stage: &Stage<'_>, now: &Fit| {
+        let facts = Facts::new(&now.built, tapes).of_parts(&own_parts);
+        let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
+        Ok(promising(&locate(stage, plant, now, joints)?, hypotheses(&facts)))
+    };
+    let (standing, attempts) = search(stage, plant, standing, &candidates, &LIMITS)?;
+    Ok(Sought { nominal, whole, located, standing, attempts })
 }
 
 /// What there is before anything is searched for.

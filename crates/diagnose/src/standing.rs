@@ -363,8 +363,8 @@ fn fit_robustly(stage: &Stage<'_>, plant: &Plant, mut now: Fit, effort: Effort) 
         }
     }
     // Those that still stand in wrong valleys would drag the others along.
-    let is_near = segments.par_iter().all(|s| lost::is_near(stage, &now.built, s));
-    let effort = if is_near { effort } else { Effort { iterations: 0, ..effort } };
+    let near: Vec<bool> = segments.par_iter().map(|s| lost::is_near(stage, &now.built, s)).collect();
+    let effort = if near.iter().all(|n| *n) { effort } else { Effort { iterations: 0, ..effort } };
     fit(stage, plant, now.set, segments, effort)
 }
 

@@ -1,6 +1,6 @@
 //! What a diagnosis is doing: for who waits for it, for its account of time, and for its end.
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Hears how a diagnosis goes.
 pub trait Watch: Sync {
@@ -24,6 +24,7 @@ pub struct Work<'a> {
     microseconds: AtomicU64,
     evaluations: AtomicU64,
     limit: u64,
+    was_ended: AtomicBool,
     /// Who hears of it.
     pub watch: &'a dyn Watch,
 }
@@ -71,6 +72,7 @@ impl<'a> Work<'a> {
             microseconds: AtomicU64::new(0),
             evaluations: AtomicU64::new(0),
             limit: (effort * USUAL) as u64,
+            was_ended: AtomicBool::new(false),
             watch,
         }
     }
@@ -84,9 +86,16 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Whether so much was done that nothing of a kind is begun any more.
+    /// Whether so much was done that what would be begun now is left; that it was is remembered.
     pub(crate) fn is_spent(&self, until: Until) -> bool {
-        self.total().evaluations as f64 > until.share() * self.limit as f64
+        let is_spent = self.total().evaluations as f64 > until.share() * self.limit as f64;
+        self.was_ended.fetch_or(is_spent, Ordering::Relaxed);
+        is_spent
+    }
+
+    /// Whether anything was left because of the limit.
+    pub(crate) fn was_ended(&self) -> bool {
+        self.was_ended.load(Ordering::Relaxed)
     }
 
     /// Adds a replay of a model of so many bodies over a time, s.
@@ -115,9 +124,9 @@ mod tests {
         let of =
             |rate_evaluations, contact_queries| sim::Work { rate_evaluations, contact_queries, ..Default::default() };
         work.add(0.5, 7, &of(40, 0));
-        assert!(!work.is_spent(Until::Search));
+        assert!(!work.is_spent(Until::Search) && !work.was_ended());
         work.add(0.25, 7, &of(0, 10));
-        assert!(work.is_spent(Until::Search) && !work.is_spent(Until::Fit));
+        assert!(work.is_spent(Until::Search) && !work.is_spent(Until::Fit) && work.was_ended());
         assert_eq!(work.total(), Total { replays: 2, simulated: 0.75, evaluations: 300 });
         work.add(0.0, 1, &of(101, 0));
         assert!(work.is_spent(Until::Fit));

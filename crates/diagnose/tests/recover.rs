@@ -107,6 +107,23 @@ fn value(diagnosis: &Diagnosis, parameter: &str, k: usize) -> f64 {
     diagnosis.effects[0].params[parameter].numbers().unwrap()[k]
 }
 
+/// A limit that ends the search in its midst, relative to the usual.
+const LITTLE: f64 = 1e-3;
+
+#[test]
+fn a_search_that_its_limit_ends_ends_alike_with_any_number_of_threads() {
+    let set = RecordingSet::load(&root().join("tests/recordings/tumble-inertia")).unwrap();
+    let of = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| diagnose::run::diagnose_with(tumbler().scenario, &set, (LITTLE, &())).unwrap().0)
+    };
+    let one = of(1);
+    assert!(one.remarks.iter().any(|r| r.contains("limit of work")), "{:?}", one.remarks);
+    assert_eq!(one.to_json().unwrap(), of(3).to_json().unwrap());
+    let whole = diagnose::diagnose(tumbler().scenario, &set, &()).unwrap().0;
+    assert!(!whole.remarks.iter().any(|r| r.contains("limit of work")), "{:?}", whole.remarks);
+}
+
 /// Right name and place, and predictions of the unseen run that the noise alone limits.
 fn check(diagnosis: &Diagnosis, name: &str, place: &str) {
     assert_eq!(diagnosis.verdict, Verdict::Explained, "{:?}", diagnosis.effects);

@@ -254,12 +254,7 @@ pub fn standard_channels(model: &Model) -> Vec<ChannelSpec> {
         add(format!("actuator.{}.command", actuator.name), unit_of_command(model, &actuator.kind), Plot::Actuators, "");
     }
     for (name, axis) in model.driven_coordinates() {
-        let (quantity, unit) = match axis {
-            DriveAxis::X => ("position.x", "m"),
-            DriveAxis::Y => ("position.y", "m"),
-            DriveAxis::Z => ("position.z", "m"),
-            DriveAxis::AboutZ => ("angle", "rad"),
-        };
+        let (quantity, unit) = quantity_along(axis);
         add(format!("drive.{name}.{quantity}"), unit, Plot::Actuators, "in the axes of the drive's frame");
     }
     for (a, b) in &pairs {
@@ -280,6 +275,16 @@ pub fn standard_channels(model: &Model) -> Vec<ChannelSpec> {
     }
     specs.extend(crate::mechanisms::channels(model));
     specs
+}
+
+/// Quantity and unit of a driven coordinate.
+fn quantity_along(axis: DriveAxis) -> (&'static str, &'static str) {
+    match axis {
+        DriveAxis::X => ("position.x", "m"),
+        DriveAxis::Y => ("position.y", "m"),
+        DriveAxis::Z => ("position.z", "m"),
+        DriveAxis::AboutZ => ("angle", "rad"),
+    }
 }
 
 /// Unit of what an actuator is commanded: by its kind, and by whether its joint turns or slides.
