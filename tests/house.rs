@@ -102,8 +102,7 @@ fn no_function_is_longer_than_a_page() {
                 None => false,
             };
             let is_one_line = line.ends_with('}') || line.ends_with(';');
-            let length =
-                if is_one_line { 1 } else { 1 + lines[at..].iter().position(|l| is_end(&l)).unwrap_or(lines.len()) };
+            let length = if is_one_line { 1 } else { 1 + lines[at..].iter().position(is_end).unwrap_or(lines.len()) };
             assert!(length <= LONGEST_FUNCTION, "{}:{}: {length} lines", file.display(), at + 1);
         }
     }
