@@ -47,7 +47,7 @@ impl Plant {
     /// The scenario alone, before a recording is read.
     ///
     /// Replays go by Runge–Kutta, whatever the scenario's own scheme: what a scheme of first order loses at the scenario's step would be taken
-    /// for physics. Their steps are chosen by what halving them moves ([`crate::pace`]).
+    /// for physics. Their steps are chosen by what halving them moves.
     pub fn new(mut scenario: Scenario) -> Self {
         if scenario.integrator.kind != IntegratorKind::Rk4 {
             scenario.integrator = Integrator { kind: IntegratorKind::Rk4, step_s: FINER * scenario.integrator.step_s };
