@@ -9,7 +9,7 @@
 use crate::attempt::Attempt;
 use crate::choice::{brought_by, by_criterion, is_enough, put_corrections_first, take_further};
 use crate::error::DiagnoseError;
-use crate::fit::{CAUTIOUS, EffectSet, Effort, Fit, UNDAMPED};
+use crate::fit::{CAUTIOUS, EffectSet, Effort, Fit, UNDAMPED, fit};
 use crate::hypothesis::Hypothesis;
 use crate::linear::{Segment, Stage};
 use crate::lost;
@@ -19,7 +19,7 @@ use crate::plant::{Built, Plant};
 use crate::refits::{Refit, Refits, scores_of_interest};
 use crate::replay::Pace;
 use crate::screen::Score;
-use crate::standing::{Standing, criterion, told};
+use crate::standing::{Standing, criterion, raw_rms, told};
 use crate::stretches::STEEP;
 use crate::work::Until;
 
@@ -51,6 +51,11 @@ pub type Candidates<'a> = dyn Fn(&Stage<'_>, &Fit) -> Result<Vec<Hypothesis>, Di
 const LINEAR: f64 = 60.0;
 /// Share of the remaining excess that an effect must take away: of what few effects leave out together, the largest part is no small one.
 const WORTHWHILE: f64 = 0.2;
+/// The same where what is left is no more than laws are off themselves: half of its root mean square.
+const MOST_OF_THE_REST: f64 = 0.75;
+/// Share of the mismatch up to which what is left may be what the laws that were found are off by: a tenth of what they do. A law of a library is
+/// a part's own to some hundredths at best, and what it is off by comes again at every stroke, so that any effect of as many numbers helps there.
+const OF_THE_LAWS: f64 = 0.01;
 /// Share of the excess that an effect must promise for a refit, where promises are linear.
 const UNPROMISING: f64 = 0.08;
 /// Difference, as a share of what the best of them has brought, below which refits are not told apart before they have converged.
@@ -74,11 +79,14 @@ pub fn search(
 ) -> Result<(Standing, Vec<Attempt>), DiagnoseError> {
     let (mut attempts, mut known) = (Vec::new(), Vec::new());
     let mut round = 0;
+    let at_first = now.whole.clone();
     if now.whole.rms() < lost::NEAR && refine(stage, &now) {
         now = now.refit(stage, plant, now.judge().set.clone(), WHOLE)?;
     }
     let is_open = |now: &Standing| now.judge().is_significant() && now.judge().set.findings().count() < limits.effects;
     while is_open(&now) && !stage.work.is_spent(Until::Search) {
+        let left = calc_left(stage, plant, &now, &at_first)?;
+        let worthwhile = share_needed(left);
         let all = hypotheses(stage, &now.windows)?;
         known.extend(all.iter().cloned());
         let open = all.into_iter().filter_map(|h| still_open(h, &now.judge().set));
@@ -87,7 +95,7 @@ pub fn search(
         attempts.append(&mut tried);
         let is_worthwhile = |b: &Standing| {
             let (before, after) = (now.judge(), b.judge());
-            let is_clear = before.cost - after.cost > (WORTHWHILE * before.excess()).max(before.least());
+            let is_clear = before.cost - after.cost > (worthwhile * before.excess()).max(before.least());
             b.is_better(&now) && (is_clear || !b.is_comparable(&now))
         };
         let Some(best) = best.filter(is_worthwhile) else { break };
@@ -123,6 +131,28 @@ pub fn search(
         attempts = only_screened(stage, plant, &now.windows, (hypotheses, limits))?;
     }
     Ok((prune(stage, plant, now)?, attempts))
+}
+
+/// Share of the mismatch that a set leaves where it is judged, mean squares above noise; `whole`: whole runs of the nominal model.
+fn calc_left(stage: &Stage<'_>, plant: &Plant, now: &Standing, whole: &Fit) -> Result<f64, DiagnoseError> {
+    if !now.judge().set.has_findings() {
+        return Ok(1.0);
+    }
+    let above_noise = |fit: &Fit| raw_rms(stage, fit).powi(2) - 1.0;
+    let mismatch = if now.follows() {
+        above_noise(whole)
+    } else {
+        let segments = now.windows.segments.iter().map(|s| Segment { weight: 1.0, columns: None, ..s.clone() });
+        above_noise(&fit(stage, plant, EffectSet::default(), segments.collect(), Effort::STARTS)?)
+    };
+    let left = above_noise(now.judge()) / mismatch.max(f64::MIN_POSITIVE);
+    stage.work.watch.step(&format!("left of the mismatch: {:.2} %", 100.0 * left));
+    Ok(left)
+}
+
+/// Share of what a set leaves that more physics has to take away; `left`: the share of the mismatch that this is.
+fn share_needed(left: f64) -> f64 {
+    if left < OF_THE_LAWS { MOST_OF_THE_REST } else { WORTHWHILE }
 }
 
 /// A near standing fitted until it has converged, each time by new derivatives, in steps that suit that: what an unfinished fit leaves, in a narrow

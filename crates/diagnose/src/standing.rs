@@ -381,7 +381,7 @@ const ROBUST: usize = 2;
 const LOWER: f64 = 0.95;
 
 /// Root mean square of a fit whose segments count by what is in them.
-fn raw_rms(stage: &Stage<'_>, fit: &Fit) -> f64 {
+pub(crate) fn raw_rms(stage: &Stage<'_>, fit: &Fit) -> f64 {
     let of = |s: &Segment| (stage.residuals(&fit.built, s).norm_squared() / s.weight, stage.count(s) as f64);
     let all: Vec<(f64, f64)> = fit.segments.par_iter().map(of).collect();
     let (cost, count) = all.iter().fold((0.0, 0.0), |sum, s| (sum.0 + s.0, sum.1 + s.1));

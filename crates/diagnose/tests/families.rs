@@ -28,10 +28,10 @@ fn tumbler(planted: &Effect, seed: u64) -> Diagnosis {
 }
 
 /// A bar that a sum of three sines drives for six seconds, three times.
-fn swing(planted: &Effect) -> Diagnosis {
+fn swing(planted: &[Effect]) -> Diagnosis {
     let scenario = scenario::load(&root().join("crates/diagnose/tests/rigs/swing.toml"), &[]).unwrap();
     let mut with = scenario.clone();
-    with.effects.push(planted.clone());
+    with.effects.extend_from_slice(planted);
     let at_rest = |built: &diagnose::plant::Built, _: &diagnose::tape::Tape| Start::nominal(built);
     let set = synthesise(with, &swings(), &at_rest, 3).unwrap();
     diagnose::diagnose(scenario, &set, &()).unwrap().0
@@ -39,7 +39,7 @@ fn swing(planted: &Effect) -> Diagnosis {
 
 /// The bar tells what was planted in it, and a number of that.
 fn check_swing(planted: &Effect, (key, value): (&str, f64)) {
-    let diagnosis = swing(planted);
+    let diagnosis = swing(std::slice::from_ref(planted));
     check(&diagnosis, planted);
     check_number(&diagnosis, key, value);
 }
@@ -132,4 +132,21 @@ fn a_slightly_wrong_card_is_no_exotic_effect() {
         assert!(matches!(diagnosis.verdict, Verdict::Explained | Verdict::NoMismatch), "{k}: {:?}", diagnosis.verdict);
         assert!(diagnosis.effects.iter().all(|e| e.name == "body-inertia"), "{k}: {:?}", diagnosis.effects);
     }
+}
+
+/// Friction that no law of the library is exactly: a tenth of it comes and goes in a dozen waves.
+#[test]
+fn what_a_law_is_off_by_is_no_company() {
+    let hinge = "joint:hinge";
+    let mut planted = vec![effect("joint-coulomb-friction", hinge, &[("c", number(0.1))])];
+    planted.extend((0..12).map(|k| {
+        let (frequency, phase) = (0.7 + 0.61 * f64::from(k), 2.4 * f64::from(k));
+        let wave = [("amplitude", number(2.5e-3)), ("frequency", number(frequency)), ("phase", number(phase))];
+        effect("periodic-disturbance", hinge, &wave)
+    }));
+    let diagnosis = swing(&planted);
+    let found: Vec<&str> = diagnosis.effects.iter().map(|e| e.name.as_str()).collect();
+    assert_eq!((diagnosis.verdict, &found[..]), (Verdict::PartlyExplained, &["joint-coulomb-friction"][..]));
+    check_number(&diagnosis, "c", 0.1);
+    assert!(diagnosis.explained_share.unwrap().share > 0.98);
 }
