@@ -17,7 +17,7 @@ use crate::linear::Stage;
 use crate::reading::Reading;
 use crate::tape::Tape;
 use rayon::prelude::*;
-use record::inspect::{Stuck, spikes, stuck, white_noise, white_variance};
+use record::inspect::{Spike, Stuck, spikes, stuck, white_noise, white_variance};
 use record::{RecordedRun, RecordingSet, Role, Series};
 use std::collections::BTreeMap;
 
@@ -103,15 +103,21 @@ fn clean_run(run: &RecordedRun, tape: Tape, said: &mut LeftOut) -> Tape {
 fn clean_reading(run: &RecordedRun, reading: &Reading, said: &mut LeftOut) -> Option<Reading> {
     let is_orientation = reading.is_orientation();
     let parts: Vec<usize> = if is_orientation { (0..4).collect() } else { reading.axes.clone() };
-    let bad_of = |axis: &usize| {
+    let series_of = |axis: &usize| {
         let part = if is_orientation { ["w", "x", "y", "z"][*axis] } else { ["x", "y", "z"][*axis] };
         let series = run.series(&reading.channel).or_else(|| run.series(&format!("{}.{part}", reading.channel)));
-        let series = series.filter(|s| s.times == reading.times)?;
-        // About an axis a turn is twice as large as it is in the quaternion.
-        let noise = if is_orientation { 0.5 * reading.sigma } else { reading.sigma };
-        Some(find_bad(series, noise))
+        series.filter(|s| s.times == reading.times)
     };
-    let found: Vec<Bad> = parts.iter().map(bad_of).collect::<Option<_>>()?;
+    let series: Vec<&Series> = parts.iter().map(series_of).collect::<Option<_>>()?;
+    // About an axis a turn is twice as large as it is in the quaternion.
+    let noise = if is_orientation { 0.5 * reading.sigma } else { reading.sigma };
+    let groups = series.chunks(if is_orientation { series.len() } else { 1 });
+    // What stands alone in a group is told with its first component.
+    let of_group = |group: &[&Series]| {
+        let mut alone = find_alone(group, noise);
+        group.iter().map(|s| find_bad(s, std::mem::take(&mut alone), noise)).collect::<Vec<Bad>>()
+    };
+    let found: Vec<Bad> = groups.flat_map(of_group).collect();
     let is_dead = |bad: &Bad| !is_orientation && bad.share() > DEAD;
     let axes: Vec<usize> = if is_orientation {
         reading.axes.clone()
@@ -142,11 +148,16 @@ impl Bad {
     }
 }
 
-fn find_bad(series: &Series, noise: f64) -> Bad {
+/// Readings that stand alone in components that share their faults; none where so many do that it is how the channel is.
+fn find_alone(group: &[&Series], noise: f64) -> Vec<Spike> {
+    let found = spikes(group, noise);
+    let most = SPIKES * group.first().map_or(0.0, |s| s.len() as f64);
+    if found.len() as f64 <= most { found } else { Vec::new() }
+}
+
+fn find_bad(series: &Series, alone: Vec<Spike>, noise: f64) -> Bad {
     let mut samples = vec![false; series.len()];
     let at = |t: f64| series.times.partition_point(|s| *s < t);
-    let alone = spikes(series, noise);
-    let alone = if alone.len() as f64 <= SPIKES * series.len() as f64 { alone } else { Vec::new() };
     alone.iter().for_each(|s| samples[at(s.t)] = true);
     let still: Vec<Stuck> = stuck(series, noise);
     for one in &still {

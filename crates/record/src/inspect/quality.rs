@@ -101,33 +101,49 @@ pub fn stuck(series: &Series, noise: f64) -> Vec<Stuck> {
 pub struct Spike {
     /// When, s.
     pub t: f64,
-    /// How far from its neighbours, in the channel's unit.
+    /// How far from its neighbours, in the channel's unit; of several components the length of all.
     pub size: f64,
 }
 
 /// Standard deviations of the residual from which a reading may be a spike.
 const FAR: f64 = 8.0;
-/// How well the neighbours must show the pattern that one lone reading leaves in them.
-const PATTERN: f64 = 0.2;
+/// What one lone reading leaves in the differences of its neighbourhood from the cubics through theirs.
+const LONE: [f64; 5] = [1.0 / 6.0, -2.0 / 3.0, 1.0, -2.0 / 3.0, 1.0 / 6.0];
+/// How well the neighbourhood must show that: squares that are left, as a share of the size's (a step leaves 0.28), and in variances of a
+/// difference. White noise leaves more than 17 of these once in a thousand. A step of 20 to 30 σ leaves less once in six, and loses one reading
+/// then; smaller ones are no spikes, larger ones do not look so.
+const PATTERN: f64 = 0.04;
+const BY_NOISE: f64 = 17.0;
 
 /// Readings that stand alone: each differs from the cubic through its four neighbours, and so do these, by −2/3 and
 /// 1/6 of it, as they must if one reading is wrong and the motion is smooth. A step or an impact leaves another pattern.
-pub fn spikes(series: &Series, noise: f64) -> Vec<Spike> {
-    let v = &series.values;
-    let residual = |i: usize| v[i] - (4.0 * (v[i - 1] + v[i + 1]) - v[i - 2] - v[i + 2]) / 6.0;
-    // Variance of the residual: σ² (1 + 2·16/36 + 2/36).
-    let limit = FAR * noise.hypot(series.quantum()) * (70.0_f64 / 36.0).sqrt();
+///
+/// `parts`: the components that one reading has in common, at the same times: one, or the four of an orientation, which share what is wrong with one
+/// of them since they are normalised. `noise` is that of a component.
+pub fn spikes(parts: &[&Series], noise: f64) -> Vec<Spike> {
+    let Some(first) = parts.first() else { return Vec::new() };
+    let cubic = |v: &[f64], i: usize| v[i] - (4.0 * (v[i - 1] + v[i + 1]) - v[i - 2] - v[i + 2]) / 6.0;
+    // Σ LONE² is the variance of such a difference, in units of σ², too.
+    let squares: f64 = LONE.iter().map(|x| x * x).sum();
+    let quantum = parts.iter().map(|s| s.quantum()).fold(0.0, f64::max);
+    let variance = squares * (noise * noise + quantum * quantum);
     let mut found = Vec::new();
-    if limit <= 0.0 {
+    if variance <= 0.0 {
         return found;
     }
-    for i in 4..series.len().saturating_sub(4) {
-        let size = residual(i);
-        let ratio = |k: usize| residual(k) / size;
-        let alike = |k: usize, share: f64| (ratio(k) - share).abs() < PATTERN;
-        let near = alike(i - 1, -2.0 / 3.0) && alike(i + 1, -2.0 / 3.0);
-        if size.abs() > limit && near && alike(i - 2, 1.0 / 6.0) && alike(i + 2, 1.0 / 6.0) {
-            found.push(Spike { t: series.times[i], size });
+    for i in 4..first.len().saturating_sub(4) {
+        if parts.iter().map(|s| cubic(&s.values, i).powi(2)).sum::<f64>() < FAR * FAR * variance {
+            continue;
+        }
+        let (mut size, mut left) = (0.0, 0.0);
+        for part in parts {
+            let around: [f64; 5] = std::array::from_fn(|k| cubic(&part.values, i + k - 2));
+            let own = around.iter().zip(LONE).map(|(r, x)| r * x).sum::<f64>() / squares;
+            left += around.iter().zip(LONE).map(|(r, x)| (r - own * x).powi(2)).sum::<f64>();
+            size = if parts.len() == 1 { own } else { own.hypot(size) };
+        }
+        if left < (PATTERN * size * size).max(BY_NOISE * parts.len() as f64 * variance) {
+            found.push(Spike { t: first.times[i], size });
         }
     }
     found
@@ -143,4 +159,41 @@ pub fn at_limit(series: &Series) -> Option<(f64, f64)> {
     let count = series.values.iter().filter(|v| v.abs() == largest).count();
     let share = count as f64 / series.len().max(1) as f64;
     (is_command && levels.len() > 50 && count >= 5 && share > 0.002).then_some((largest, share))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A slow wave at 10 Hz with noise of ±σ that is no pattern, σ = 1, and something added.
+    fn wave(phase: f64, added: impl Fn(usize) -> f64) -> Series {
+        let times: Vec<f64> = (0..200).map(|i| f64::from(i) * 0.1).collect();
+        let noise = |i: usize| [1.0, -0.4, -1.3, 0.7, 0.2, -0.9, 1.1][i * i % 7];
+        let value = |(i, t): (usize, &f64)| 300.0 * (0.3 * t + phase).sin() + noise(i) + added(i);
+        let values = times.iter().enumerate().map(value).collect();
+        Series::with_quantum("joint.hinge.position", times, values, 0.01)
+    }
+
+    fn found(parts: &[&Series]) -> Vec<usize> {
+        spikes(parts, 1.0).iter().map(|s| (s.t / 0.1).round() as usize).collect()
+    }
+
+    #[test]
+    fn a_reading_alone_is_found_and_a_step_or_a_bump_is_not() {
+        assert!(found(&[&wave(0.0, |_| 0.0)]).is_empty());
+        let spike = |i: usize| if i == 60 { 15.0 } else if i == 131 { -40.0 } else { 0.0 };
+        assert_eq!(found(&[&wave(0.0, spike)]), [60, 131]);
+        for size in [10.0, 60.0, 300.0] {
+            assert!(found(&[&wave(0.0, |i| if i < 60 { 0.0 } else { size })]).is_empty(), "a step of {size}");
+            assert!(found(&[&wave(0.0, |i| if (60..63).contains(&i) { size } else { 0.0 })]).is_empty(), "a bump");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_with_one_component_is_found_in_all_that_share_it() {
+        // 8 σ in each of three: too little alone.
+        let parts = [0.0, 1.0, 2.0].map(|phase| wave(phase, |i| if i == 90 { 8.0 } else { 0.0 }));
+        assert!(parts.iter().all(|part| found(&[part]).is_empty()));
+        assert_eq!(found(&parts.each_ref()), [90]);
+    }
 }

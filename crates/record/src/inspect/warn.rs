@@ -141,7 +141,7 @@ fn values(series: &Series, report: Option<&ChannelReport>) -> Vec<Remark> {
             ),
         );
     }
-    let spikes = spikes(series, noise);
+    let spikes = spikes(&[series], noise);
     if let Some(first) = spikes.first() {
         let what = format!("{} lone outliers, the first at {:.4} s by {:.3e}", spikes.len(), first.t, first.size);
         say(Severity::Warning, what);
