@@ -127,26 +127,64 @@ pub fn spikes(parts: &[&Series], noise: f64) -> Vec<Spike> {
     let squares: f64 = LONE.iter().map(|x| x * x).sum();
     let quantum = parts.iter().map(|s| s.quantum()).fold(0.0, f64::max);
     let variance = squares * (noise * noise + quantum * quantum);
-    let mut found = Vec::new();
-    if variance <= 0.0 {
-        return found;
+    if variance <= 0.0 || first.len() < 9 {
+        return Vec::new();
     }
-    for i in 4..first.len().saturating_sub(4) {
-        if parts.iter().map(|s| cubic(&s.values, i).powi(2)).sum::<f64>() < FAR * FAR * variance {
-            continue;
-        }
-        let (mut size, mut left) = (0.0, 0.0);
+    let places = 4..first.len() - 4;
+    let is_far = |i: &usize| parts.iter().map(|s| cubic(&s.values, *i).powi(2)).sum::<f64>() > FAR * FAR * variance;
+    let spike_at = |i: usize, other: Option<usize>| {
+        let (mut size, mut all, mut left) = (0.0, 0.0, 0.0);
         for part in parts {
-            let around: [f64; 5] = std::array::from_fn(|k| cubic(&part.values, i + k - 2));
-            let own = around.iter().zip(LONE).map(|(r, x)| r * x).sum::<f64>() / squares;
-            left += around.iter().zip(LONE).map(|(r, x)| (r - own * x).powi(2)).sum::<f64>();
-            size = if parts.len() == 1 { own } else { own.hypot(size) };
+            let told = told_by(|k| cubic(&part.values, k), i, other);
+            size = if parts.len() == 1 { told.size } else { told.size.hypot(size) };
+            (all, left) = (all + told.squares, left + told.left);
         }
-        if left < (PATTERN * size * size).max(BY_NOISE * parts.len() as f64 * variance) {
-            found.push(Spike { t: first.times[i], size });
-        }
+        let is_alone = left < (PATTERN * all / squares).max(BY_NOISE * parts.len() as f64 * variance);
+        let is_large = size * size > FAR * FAR * variance / squares;
+        (is_alone && is_large).then_some(Spike { t: first.times[i], size })
+    };
+    let far: Vec<usize> = places.clone().filter(is_far).collect();
+    let mut found: Vec<(usize, Spike)> = far.iter().filter_map(|i| Some((*i, spike_at(*i, None)?))).collect();
+    // Two near by hide each other; the neighbours of one are far for its sake.
+    let open = far.iter().filter(|i| found.iter().all(|(at, _)| at.abs_diff(**i) > 1));
+    let with_another = |i: &usize| {
+        let others = PAIR.iter().flat_map(|d| [i.checked_sub(*d), Some(i + d)]).flatten().filter(|j| places.contains(j));
+        others.filter_map(|j| spike_at(*i, Some(j))).next().map(|spike| (*i, spike))
+    };
+    let paired: Vec<(usize, Spike)> = open.filter_map(with_another).collect();
+    found.extend(paired);
+    found.sort_by_key(|(i, _)| *i);
+    found.into_iter().map(|(_, spike)| spike).collect()
+}
+
+/// Distances at which a second lone reading is looked for; neighbours are a bump.
+const PAIR: [usize; 3] = [2, 3, 4];
+
+/// What one lone reading, or two, make of a neighbourhood.
+struct Told {
+    /// Size of the first.
+    size: f64,
+    /// Sum of the squares of the differences, and what is left of them.
+    squares: f64,
+    left: f64,
+}
+
+/// Least squares of a lone reading at `i`, and at another place where one is given, in differences from cubics.
+fn told_by(difference: impl Fn(usize) -> f64, i: usize, other: Option<usize>) -> Told {
+    let (low, high) = (i.min(other.unwrap_or(i)) - 2, i.max(other.unwrap_or(i)) + 2);
+    let lone = |at: usize, k: usize| (k + 2).checked_sub(at).and_then(|n| LONE.get(n)).copied().unwrap_or(0.0);
+    let (mut aa, mut ab, mut ar, mut br, mut rr) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for k in low..=high {
+        let (r, a, b) = (difference(k), lone(i, k), other.map_or(0.0, |j| lone(j, k)));
+        (aa, ab, ar, br, rr) = (aa + a * a, ab + a * b, ar + a * r, br + b * r, rr + r * r);
     }
-    found
+    if other.is_none() {
+        return Told { size: ar / aa, squares: rr, left: rr - ar * ar / aa };
+    }
+    // Both have the same norm.
+    let determinant = aa * aa - ab * ab;
+    let (x, y) = ((aa * ar - ab * br) / determinant, (aa * br - ab * ar) / determinant);
+    Told { size: x, squares: rr, left: rr - x * ar - y * br }
 }
 
 /// Share of the samples at the largest size of a command, where that is a plateau and not a valve's 1.
@@ -183,6 +221,8 @@ mod tests {
         assert!(found(&[&wave(0.0, |_| 0.0)]).is_empty());
         let spike = |i: usize| if i == 60 { 15.0 } else if i == 131 { -40.0 } else { 0.0 };
         assert_eq!(found(&[&wave(0.0, spike)]), [60, 131]);
+        let pair = |i: usize| if i == 60 { 25.0 } else if i == 62 { -20.0 } else { 0.0 };
+        assert_eq!(found(&[&wave(0.0, pair)]), [60, 62]);
         for size in [10.0, 60.0, 300.0] {
             assert!(found(&[&wave(0.0, |i| if i < 60 { 0.0 } else { size })]).is_empty(), "a step of {size}");
             assert!(found(&[&wave(0.0, |i| if (60..63).contains(&i) { size } else { 0.0 })]).is_empty(), "a bump");
