@@ -61,7 +61,7 @@ pub(crate) fn curves(findings: &Findings, stage: &Stage<'_>) -> Vec<Curve> {
 }
 
 /// Unit of a channel; of a joint's that of its kind, for the name of a channel does not tell whether it turns or slides.
-fn unit_of_channel(model: &Model, quantity: Quantity, channel: &str) -> &'static str {
+pub(crate) fn unit_of_channel(model: &Model, quantity: Quantity, channel: &str) -> &'static str {
     let unit = ChannelName::parse(channel).map_or("", |name| name.quantity.unit());
     let Some((turning, sliding)) = unit.split_once('|') else { return unit };
     let (Quantity::JointPosition(v)

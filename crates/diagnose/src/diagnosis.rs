@@ -201,6 +201,31 @@ pub struct Errors {
     pub windowed: BeforeAfter,
     /// Run by run.
     pub runs: Vec<RunError>,
+    /// Channel by channel in its own unit, the one that is most wrong first; over the holdout runs, or the fit runs where there are none.
+    #[serde(default)]
+    pub channels: Vec<ChannelError>,
+}
+
+/// Root mean square error of one channel, in its own unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ChannelError {
+    /// Channel, without the component where it has several.
+    pub channel: String,
+    /// Its unit; rad for an orientation.
+    pub unit: String,
+    /// Its noise, one standard deviation, rounding included.
+    pub sigma: f64,
+    /// Free run.
+    pub free: BeforeAfter,
+    /// Windowed.
+    pub windowed: BeforeAfter,
+}
+
+impl ChannelError {
+    /// At the horizon that a judgement speaks of.
+    pub fn at(&self, judged: &Judged) -> BeforeAfter {
+        if judged.window_s.is_some() { self.windowed } else { self.free }
+    }
 }
 
 /// Share of the mismatch that the effects found explain, in mean square beyond the noise, over windows each with an initial state of its own.

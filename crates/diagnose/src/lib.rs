@@ -6,6 +6,7 @@
 //! What comes out: a [`Diagnosis`] (`diagnosis.json`) and, behind it, [`Evidence`]; from the two the page of [`report`], the text
 //! of [`summary_text`] and the scenario of [`patched_toml`]. [`score`] judges diagnoses against answer keys.
 
+mod accuracy;
 mod approaches;
 pub mod attempt;
 pub mod catalogue;

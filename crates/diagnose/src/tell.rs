@@ -1,10 +1,8 @@
 //! From findings to the diagnosis and its evidence.
 
+use crate::accuracy::errors;
 use crate::condition::{self, Features, find_features};
-use crate::diagnosis::{
-    BeforeAfter, Diagnosis, Errors, FORMAT, Found, Located as LocatedPlace, Remainder, Rival, Role, RunError, StdErr,
-    Verdict,
-};
+use crate::diagnosis::{Diagnosis, FORMAT, Found, Located as LocatedPlace, Remainder, Rival, Role, StdErr, Verdict};
 use crate::evidence::{
     self, Evidence, Heat, HeatRow, Hypothesis, Identifiable, Level, Parameter, Remark, Status, bin_edges, mean_squares,
 };
@@ -248,25 +246,6 @@ const TOLD: usize = 4;
 
 fn condition_of(place: &str) -> &'static str {
     if place.starts_with("contact:") { "in contact" } else { "always" }
-}
-
-fn errors(findings: &Findings, stage: &Stage<'_>) -> Errors {
-    let judgement = &findings.judgement;
-    let pair = |[before, after]: [f64; 2]| BeforeAfter { before, after };
-    let of_role = |windowed: bool, role: record::Role| judgement.rms_of(stage.tapes, windowed, role).map(pair);
-    let run = |(i, tape): (usize, &crate::tape::Tape)| {
-        let [before, after] = judgement.rms(false, |r| r == i);
-        let [windowed_before, windowed_after] = judgement.rms(true, |r| r == i);
-        RunError { file: tape.file.clone(), role: role(tape.role), before, after, windowed_before, windowed_after }
-    };
-    let none = BeforeAfter { before: f64::NAN, after: f64::NAN };
-    Errors {
-        fit: of_role(false, record::Role::Fit).unwrap_or(none),
-        holdout: of_role(false, record::Role::Holdout),
-        window_s: findings.window,
-        windowed: of_role(true, record::Role::Holdout).or_else(|| of_role(true, record::Role::Fit)).unwrap_or(none),
-        runs: stage.tapes.iter().enumerate().map(run).collect(),
-    }
 }
 
 pub(crate) fn role(role: record::Role) -> Role {

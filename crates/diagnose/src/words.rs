@@ -1,8 +1,10 @@
 //! The verdict in one paragraph of plain words, from the data.
 
-use crate::diagnosis::{Diagnosis, Explained, Found, Judged, Located, ParamValue, Rival, StdErr, Verdict};
+use crate::diagnosis::{
+    BeforeAfter, ChannelError, Diagnosis, Explained, Found, Judged, Located, ParamValue, Rival, StdErr, Verdict,
+};
 use crate::evidence::Evidence;
-use crate::number::{noise, percent, with_error};
+use crate::number::{digits, noise, percent, with_error};
 use crate::vocabulary::{plain_name, unit};
 
 /// A gap of the information criterion below which the data do not decide between two explanations.
@@ -43,9 +45,23 @@ fn opening(diagnosis: &Diagnosis) -> String {
         ),
         _ => format!(
             "The recording “{recording}” differs from the scenario “{scenario}” by more than the noise of its sensors: \
-             {whose} the scenario is wrong by {before} times the noise (1 is perfect)."
+             {whose} the scenario is wrong by {before} times the noise (1 is perfect){}.",
+            most_wrong(diagnosis, &judged)
+                .map(|(c, e)| format!(", in {} by {}", c.channel, in_unit(c, e.before)))
+                .unwrap_or_default()
         ),
     }
+}
+
+/// The channel that is most wrong, and how wrong it is in its own unit.
+fn most_wrong<'a>(diagnosis: &'a Diagnosis, judged: &Judged) -> Option<(&'a ChannelError, BeforeAfter)> {
+    let first = diagnosis.error.channels.first()?;
+    Some((first, first.at(judged)))
+}
+
+/// "0.24 m": an error to two digits.
+fn in_unit(channel: &ChannelError, error: f64) -> String {
+    format!("{} {}", digits(error, 2), channel.unit).trim_end().to_owned()
 }
 
 /// On which runs, and over which horizon.
@@ -194,10 +210,13 @@ fn improvement(diagnosis: &Diagnosis) -> Option<String> {
             noise(error.windowed.after)
         ),
     };
+    let most = most_wrong(diagnosis, &judged)
+        .map(|(c, e)| format!(", in {} from {} to {}", c.channel, in_unit(c, e.before), in_unit(c, e.after)));
     Some(format!(
-        "With {what} in the model, the error there falls from {} to {} times the noise{windows}.",
+        "With {what} in the model, the error there falls from {} to {} times the noise{windows}{}.",
         noise(judged.error.before),
-        noise(judged.error.after)
+        noise(judged.error.after),
+        most.unwrap_or_default()
     ))
 }
 

@@ -3,7 +3,7 @@
 
 mod samples;
 
-use diagnose::diagnosis::{Diagnosis, Verdict};
+use diagnose::diagnosis::{BeforeAfter, ChannelError, Diagnosis, Verdict};
 use diagnose::evidence::Evidence;
 use diagnose::words::paragraph;
 use diagnose::{report_html, summary_text};
@@ -62,6 +62,20 @@ fn a_report_without_any_evidence_is_still_a_page() {
     }
 }
 
+/// The joint's diagnosis with the error of a channel in its own unit.
+fn in_radians() -> (Diagnosis, Evidence) {
+    let (mut diagnosis, evidence) = samples::joint();
+    let error = |before: f64, after: f64| BeforeAfter { before, after };
+    diagnosis.error.channels = vec![ChannelError {
+        channel: "joint.joint_3.position".to_owned(),
+        unit: "rad".to_owned(),
+        sigma: 5e-5,
+        free: error(0.8, 8e-5),
+        windowed: error(0.012_3, 5.03e-5),
+    }];
+    (diagnosis, evidence)
+}
+
 #[test]
 fn the_paragraph_says_where_when_what_how_sure_and_what_it_improves() {
     let (diagnosis, evidence) = samples::joint();
@@ -74,6 +88,15 @@ fn the_paragraph_says_where_when_what_how_sure_and_what_it_improves() {
     ] {
         assert!(said.contains(part), "{part} in: {said}");
     }
+    let (mut diagnosis, evidence) = in_radians();
+    let said = paragraph(&diagnosis, &evidence);
+    for part in ["(1 is perfect), in joint.joint_3.position by 0.8 rad.", "position from 0.8 rad to 8·10⁻⁵ rad"] {
+        assert!(said.contains(part), "{part} in: {said}");
+    }
+    // Where whole runs are not predictable both tell of windows.
+    diagnosis.error.holdout.as_mut().unwrap().after = 100.0;
+    let said = paragraph(&diagnosis, &evidence);
+    assert!(said.contains("in joint.joint_3.position by 0.012 rad."), "{said}");
     let (diagnosis, evidence) = samples::contact();
     let said = paragraph(&diagnosis, &evidence);
     for part in [

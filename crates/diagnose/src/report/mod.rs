@@ -126,6 +126,15 @@ fn tiles(diagnosis: &Diagnosis, evidence: &Evidence) -> Vec<(&'static str, Strin
         None => format!("× noise, free run; {} in windows of {window} s", arrow(error.windowed)),
     };
     tiles.push((label, arrow(judged.error), below));
+    if let Some(most) = diagnosis.error.channels.first().filter(|_| diagnosis.verdict != Verdict::NoMismatch) {
+        let error = most.at(&judged);
+        let value = if diagnosis.effects.is_empty() {
+            crate::number::digits(error.before, 2)
+        } else {
+            format!("{} → {}", crate::number::digits(error.before, 2), crate::number::digits(error.after, 2))
+        };
+        tiles.push(("most wrong channel", format!("{value} {}", most.unit), format!("rms, {}", most.channel)));
+    }
     tiles
 }
 

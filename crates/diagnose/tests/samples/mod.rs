@@ -68,7 +68,7 @@ impl Sample<'_> {
             verdict: self.verdict,
             located,
             effects,
-            error: Errors { fit, holdout: Some(free), window_s: self.window_s, windowed, runs },
+            error: Errors { channels: Vec::new(), fit, holdout: Some(free), window_s: self.window_s, windowed, runs },
             remarks: Vec::new(),
         }
     }

@@ -148,7 +148,8 @@ pub fn spikes(parts: &[&Series], noise: f64) -> Vec<Spike> {
     // Two near by hide each other; the neighbours of one are far for its sake.
     let open = far.iter().filter(|i| found.iter().all(|(at, _)| at.abs_diff(**i) > 1));
     let with_another = |i: &usize| {
-        let others = PAIR.iter().flat_map(|d| [i.checked_sub(*d), Some(i + d)]).flatten().filter(|j| places.contains(j));
+        let others =
+            PAIR.iter().flat_map(|d| [i.checked_sub(*d), Some(i + d)]).flatten().filter(|j| places.contains(j));
         others.filter_map(|j| spike_at(*i, Some(j))).next().map(|spike| (*i, spike))
     };
     let paired: Vec<(usize, Spike)> = open.filter_map(with_another).collect();
@@ -219,9 +220,25 @@ mod tests {
     #[test]
     fn a_reading_alone_is_found_and_a_step_or_a_bump_is_not() {
         assert!(found(&[&wave(0.0, |_| 0.0)]).is_empty());
-        let spike = |i: usize| if i == 60 { 15.0 } else if i == 131 { -40.0 } else { 0.0 };
+        let spike = |i: usize| {
+            if i == 60 {
+                15.0
+            } else if i == 131 {
+                -40.0
+            } else {
+                0.0
+            }
+        };
         assert_eq!(found(&[&wave(0.0, spike)]), [60, 131]);
-        let pair = |i: usize| if i == 60 { 25.0 } else if i == 62 { -20.0 } else { 0.0 };
+        let pair = |i: usize| {
+            if i == 60 {
+                25.0
+            } else if i == 62 {
+                -20.0
+            } else {
+                0.0
+            }
+        };
         assert_eq!(found(&[&wave(0.0, pair)]), [60, 62]);
         for size in [10.0, 60.0, 300.0] {
             assert!(found(&[&wave(0.0, |i| if i < 60 { 0.0 } else { size })]).is_empty(), "a step of {size}");
