@@ -21,6 +21,7 @@ mod track;
 
 use crate::RecordingSet;
 use filter::{Fit, fit};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// A figure and its standard error.
@@ -79,11 +80,16 @@ pub struct Consistency {
 }
 
 /// Every pair of position and rate of a set. `sigma`: noise of a channel, rounding included; `None` leaves the pair out.
-pub fn check(set: &RecordingSet, sigma: &dyn Fn(&str) -> Option<f64>) -> Vec<Consistency> {
-    pairs::find(set).iter().filter_map(|pair| check_pair(set, pair, sigma)).collect()
+pub fn check(set: &RecordingSet, sigma: &Sigma<'_>) -> Vec<Consistency> {
+    let found: Vec<Option<Consistency>> =
+        pairs::find(set).par_iter().map(|pair| check_pair(set, pair, sigma)).collect();
+    found.into_iter().flatten().collect()
 }
 
-fn check_pair(set: &RecordingSet, pair: &pairs::Pair, sigma: &dyn Fn(&str) -> Option<f64>) -> Option<Consistency> {
+/// Noise of a channel by its name, where it is known.
+pub type Sigma<'a> = dyn Fn(&str) -> Option<f64> + Sync + 'a;
+
+fn check_pair(set: &RecordingSet, pair: &pairs::Pair, sigma: &Sigma<'_>) -> Option<Consistency> {
     let noise = pairs::noise(pair, sigma)?;
     let tracks = pairs::tracks(set, pair, &noise);
     if tracks.iter().map(|track| track.times.len()).sum::<usize>() < FEWEST {

@@ -2,6 +2,7 @@
 
 use super::track::{Measured, Track};
 use crate::{ChannelName, Quantity, RecordedRun, RecordingSet, Series};
+use rayon::prelude::*;
 use spatial::nalgebra::Quaternion;
 use spatial::{Rot, Vec3};
 use std::collections::BTreeSet;
@@ -58,7 +59,7 @@ pub(super) fn find(set: &RecordingSet) -> Vec<Pair> {
 }
 
 /// Noise of a pair; the components of one sensor share theirs.
-pub(super) fn noise(pair: &Pair, sigma: &dyn Fn(&str) -> Option<f64>) -> Option<Noise> {
+pub(super) fn noise(pair: &Pair, sigma: &super::Sigma<'_>) -> Option<Noise> {
     let mean_square = |channels: &[String]| {
         let squares: Option<Vec<f64>> = channels.iter().map(|c| sigma(c).map(|s| s * s)).collect();
         squares.map(|s| (s.iter().sum::<f64>() / s.len() as f64).sqrt())
@@ -69,7 +70,8 @@ pub(super) fn noise(pair: &Pair, sigma: &dyn Fn(&str) -> Option<f64>) -> Option<
 
 /// The samples of a pair, run by run.
 pub(super) fn tracks(set: &RecordingSet, pair: &Pair, noise: &Noise) -> Vec<Track> {
-    set.runs.iter().filter_map(|run| track(run, pair, noise)).collect()
+    let all: Vec<Option<Track>> = set.runs.par_iter().map(|run| track(run, pair, noise)).collect();
+    all.into_iter().flatten().collect()
 }
 
 fn track(run: &RecordedRun, pair: &Pair, noise: &Noise) -> Option<Track> {

@@ -15,6 +15,7 @@ pub use text::to_text;
 
 use crate::consistency::{self, Consistency};
 use crate::{ChannelName, Quantity, RecordingSet, Remark, Series};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -143,7 +144,7 @@ fn channels(set: &RecordingSet) -> Vec<ChannelReport> {
     for series in set.runs.iter().flat_map(|run| &run.series) {
         all.entry(&series.channel).or_default().push(series);
     }
-    all.iter().map(|(channel, series)| channel_report(set, channel, series)).collect()
+    all.par_iter().map(|(channel, series)| channel_report(set, channel, series)).collect()
 }
 
 fn channel_report(set: &RecordingSet, channel: &str, series: &[&Series]) -> ChannelReport {
