@@ -6,8 +6,19 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The one total order.
-const ORDER: [&str; 10] =
-    ["spatial", "friction", "contact", "multibody", "sim", "record", "lab", "scenario", "campaign", "diagnose"];
+const ORDER: [&str; 11] = [
+    "spatial",
+    "friction",
+    "contact",
+    "multibody",
+    "sim",
+    "record",
+    "lab",
+    "scenario",
+    "campaign",
+    "diagnose",
+    "score",
+];
 
 /// The wall.
 const LONGEST_FILE: usize = 600;

@@ -1,7 +1,7 @@
 //! softdock: spacecraft docking and grasp scenarios with bristle friction.
 //!
 //! The layers, each usable by itself: [`spatial`] < [`friction`] < [`contact`] < [`multibody`] < [`sim`] < [`record`] <
-//! [`lab`] < [`scenario`] < [`campaign`] < [`diagnose`]. How to use them stands in the [`guide`].
+//! [`lab`] < [`scenario`] < [`campaign`] < [`diagnose`] < [`score`]. How to use them stands in the [`guide`].
 //!
 //! ```no_run
 //! use softdock::{scenario, sim};
@@ -17,4 +17,4 @@
 
 pub mod guide;
 
-pub use {campaign, contact, diagnose, friction, lab, multibody, record, scenario, sim, spatial};
+pub use {campaign, contact, diagnose, friction, lab, multibody, record, scenario, score, sim, spatial};

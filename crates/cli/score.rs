@@ -1,7 +1,7 @@
 //! `softdock score DIAGNOSES KEYS`: judges diagnoses against answer keys.
 
 use crate::Status;
-use softdock::diagnose::score::score_folders;
+use softdock::score::score_folders;
 use std::path::PathBuf;
 
 /// Arguments of `softdock score`.

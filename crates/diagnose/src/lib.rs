@@ -4,7 +4,7 @@
 //! `[[effect]]` entries of a copy of the scenario; every hypothesis is simulated by the same `sim` that runs scenarios.
 //!
 //! What comes out: a [`Diagnosis`] (`diagnosis.json`) and, behind it, [`Evidence`]; from the two the page of [`report`], the text
-//! of [`summary_text`] and the scenario of [`patched_toml`]. [`score`] judges diagnoses against answer keys.
+//! of [`summary_text`] and the scenario of [`patched_toml`]. The crate `score` judges diagnoses against answer keys.
 
 mod accuracy;
 mod approaches;
@@ -27,18 +27,18 @@ pub mod locate;
 mod lost;
 mod mounts;
 mod noise;
-mod number;
+pub mod number;
 mod output;
 mod pace;
 mod parsimony;
 mod patched;
+pub mod place;
 pub mod plant;
 pub mod reading;
 mod refits;
 pub mod replay;
 pub mod report;
 pub mod run;
-pub mod score;
 pub mod screen;
 pub mod search;
 mod settle;
@@ -63,7 +63,7 @@ pub use output::{DIAGNOSIS_FILE, OutputError, write_diagnosis};
 pub use patched::{FILE as PATCHED_FILE, patched_toml};
 pub use report::report_html;
 pub use run::diagnose;
-pub use summary::summary_text;
+pub use summary::{aligned, summary_text};
 pub use synthetic::synthesise;
 pub use vocabulary::{plain_name, unit};
 pub use work::Watch;

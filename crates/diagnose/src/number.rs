@@ -1,12 +1,12 @@
 //! Numbers for a reader: as many digits as they are worth.
 
 /// Four significant digits, powers of ten where they help; "–" for what is not finite.
-pub(crate) fn short(x: f64) -> String {
+pub fn short(x: f64) -> String {
     digits(x, 4)
 }
 
 /// `count` significant digits, trailing zeros left out.
-pub(crate) fn digits(x: f64, count: i32) -> String {
+pub fn digits(x: f64, count: i32) -> String {
     if !x.is_finite() {
         return "–".to_owned();
     }
@@ -30,7 +30,7 @@ pub(crate) fn digits(x: f64, count: i32) -> String {
 /// A value with its standard error, both to the error's second digit: `0.9012 ± 0.0011`, `(1.98 ± 0.02)·10⁻⁴`.
 ///
 /// Without a finite error the value stands alone.
-pub(crate) fn with_error(value: f64, std_err: f64) -> String {
+pub fn with_error(value: f64, std_err: f64) -> String {
     if !(std_err.is_finite() && std_err > 0.0 && value.is_finite()) {
         return short(value);
     }
@@ -44,7 +44,7 @@ pub(crate) fn with_error(value: f64, std_err: f64) -> String {
 }
 
 /// An error in units of noise: three decimals near 1, fewer above.
-pub(crate) fn noise(x: f64) -> String {
+pub fn noise(x: f64) -> String {
     match x {
         x if !x.is_finite() => "–".to_owned(),
         x if x < 10.0 => format!("{x:.3}"),
@@ -54,7 +54,7 @@ pub(crate) fn noise(x: f64) -> String {
 }
 
 /// A share in per cent: `87 %`, `0.4 %`.
-pub(crate) fn percent(share: f64) -> String {
+pub fn percent(share: f64) -> String {
     if !share.is_finite() {
         return "–".to_owned();
     }

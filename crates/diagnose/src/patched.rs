@@ -54,7 +54,7 @@ fn without_effects(text: &str) -> String {
 }
 
 fn is_same(effect: &scenario::spec::Effect, found: &Found) -> bool {
-    effect.name == found.name && crate::score::same_place(&effect.place, &found.place)
+    effect.name == found.name && crate::place::same_place(&effect.place, &found.place)
 }
 
 fn has_any(scenario: &Scenario, found: &[Found]) -> bool {

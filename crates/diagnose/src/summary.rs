@@ -96,7 +96,7 @@ fn add_table(text: &mut String, header: &[&str], rows: Vec<Vec<String>>) {
 }
 
 /// Rows of cells in aligned columns, two spaces apart.
-pub(crate) fn aligned(rows: &[Vec<String>]) -> String {
+pub fn aligned(rows: &[Vec<String>]) -> String {
     let width = |k: usize| rows.iter().filter_map(|r| r.get(k)).map(|c| c.chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..rows.iter().map(Vec::len).max().unwrap_or(0)).map(width).collect();
     let mut text = String::new();

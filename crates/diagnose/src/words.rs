@@ -223,7 +223,7 @@ fn improvement(diagnosis: &Diagnosis) -> Option<String> {
 /// What the data do not decide.
 fn doubts(diagnosis: &Diagnosis) -> Option<String> {
     let near = |found: &Found| {
-        let one = |rival: &Rival| match crate::score::same_place(&rival.place, &found.place) {
+        let one = |rival: &Rival| match crate::place::same_place(&rival.place, &found.place) {
             true => plain_name(&rival.name).to_owned(),
             false => format!("{} at {}", plain_name(&rival.name), place_words(&rival.place)),
         };

@@ -11,9 +11,9 @@
 //! | an angle that has no natural zero (phase, axis of anisotropy) | within 0.1 rad or two standard errors |
 //! | a vector | entry by entry; an entry that is zero in the key within 10 % of the vector's norm or two standard errors |
 
-use super::{Key, KeyEffect};
-use crate::diagnosis::{Found, ParamValue, StdErr};
-use crate::number::short;
+use crate::{Key, KeyEffect};
+use diagnose::diagnosis::{Found, ParamValue, StdErr};
+use diagnose::number::short;
 use serde::Serialize;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -1,7 +1,7 @@
 //! Folders of diagnoses and keys.
 
-use super::{Key, ScoreTable, SetScore, score_set};
-use crate::diagnosis::Diagnosis;
+use crate::{Key, ScoreTable, SetScore, score_set};
+use diagnose::diagnosis::Diagnosis;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use thiserror::Error;

@@ -8,28 +8,27 @@
 //! | name, place | the first effect (corrections that the key allows apart) is one of the key's, or one it accepts, and no effect is there that the key does not have |
 //! | both | in sets with two effects: both; of an unknown among them: its place comes first of those located |
 //! | parameters | see `parameters` |
-//! | holdout | free-run error of the corrected model on the holdout runs ≤ 1.5 times that of the true model; in windows on the arm, where nothing restores the vertical joints |
+//! | holdout | error of the corrected model on the holdout runs ≤ 1.5 times that of the true model: of free runs; in windows where the diagnosis says that free runs are not predictable and windows tell a wrong model too |
 //! | located | an unknown's place comes first |
 
 mod folder;
 mod key;
 mod parameters;
-mod place;
 mod table;
 
 pub use folder::{ScoreError, score_folders};
 pub use key::{Accepted, Key, KeyEffect, Oracle};
 pub use parameters::Judged;
-pub use place::{same_place, unqualified};
 pub use table::{Criterion, ScoreTable};
 
-use crate::diagnosis::{Diagnosis, Found, Verdict};
+use diagnose::diagnosis::{Diagnosis, Found, Verdict};
+use diagnose::place::same_place;
 use serde::Serialize;
 
 /// How far the corrected model's error may exceed the true model's.
 pub const HOLDOUT_FACTOR: f64 = 1.5;
-/// Rigs that are judged in windows.
-const WINDOWED_RIGS: [&str; 1] = ["arm-bench"];
+/// How far the nominal model's error in windows must exceed the true model's for windows to tell a right model from a wrong one.
+const TOLD_BY_WINDOWS: f64 = 10.0;
 
 /// What was judged of one set; `None`: does not apply.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -52,7 +51,7 @@ pub struct SetScore {
     pub parameters: Option<bool>,
     /// Holdout error right.
     pub holdout: Option<bool>,
-    /// Holdout error after the correction (in windows on the arm), in units of noise; `null` where there is none.
+    /// Holdout error after the correction (in windows where free runs are not predictable), in units of noise; `null` where there is none.
     pub holdout_after: Option<f64>,
     /// An unknown's place right.
     pub located: Option<bool>,
@@ -191,7 +190,8 @@ fn located(diagnosis: &Diagnosis, key: &Key, notes: &mut Vec<String>) -> Option<
 
 /// The figure that the holdout is judged by.
 fn holdout_after(diagnosis: &Diagnosis, key: &Key) -> Option<f64> {
-    let after = match WINDOWED_RIGS.contains(&key.rig.as_str()) {
+    let is_told_by_windows = key.oracle.nominal_windowed > TOLD_BY_WINDOWS * key.oracle.true_model;
+    let after = match diagnosis.judged().window_s.is_some() && is_told_by_windows {
         true => diagnosis.error.windowed.after,
         false => diagnosis.error.holdout?.after,
     };

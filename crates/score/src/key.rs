@@ -1,16 +1,13 @@
 //! An answer key: what a recording set conceals.
 
-use super::same_place;
-use crate::diagnosis::{Found, ParamValue, Verdict};
+use diagnose::diagnosis::{Found, ParamValue, Verdict};
+use diagnose::place::same_place;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
 /// An answer key.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct Key {
-    /// The rig.
-    #[serde(default)]
-    pub rig: String,
     /// What is concealed; empty: a null.
     pub effects: Vec<KeyEffect>,
     /// Other answers that count.
@@ -50,12 +47,15 @@ pub struct Accepted {
     pub place: String,
 }
 
-/// Free-run RMS errors on the holdout runs, in units of noise.
+/// RMS errors on the holdout runs, in units of noise.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Deserialize)]
 pub struct Oracle {
     /// Of the true model from the true state.
     #[serde(rename = "true")]
     pub true_model: f64,
+    /// Of the nominal model in windows; zero where the key does not say.
+    #[serde(default)]
+    pub nominal_windowed: f64,
 }
 
 /// Corrections of inertial numbers and gains that a wrong card excuses.

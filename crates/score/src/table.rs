@@ -1,7 +1,7 @@
 //! The table of a score and what it must reach.
 
-use super::SetScore;
-use crate::diagnosis::Verdict;
+use crate::SetScore;
+use diagnose::diagnosis::Verdict;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -82,7 +82,7 @@ impl ScoreTable {
     pub fn text(&self) -> String {
         let mut rows: Vec<Vec<String>> = vec![COLUMNS.map(str::to_owned).to_vec()];
         rows.extend(self.sets.iter().map(row));
-        let mut text = crate::summary::aligned(&rows);
+        let mut text = diagnose::aligned(&rows);
         text.push('\n');
         for c in self.criteria() {
             let mark = match (c.of, c.holds()) {
