@@ -201,7 +201,7 @@ pub struct Effort {
 }
 
 /// Damping where the way may be far and bent: a full step may jump into another valley.
-pub const CAUTIOUS: f64 = 1e-3;
+const CAUTIOUS: f64 = 1e-3;
 /// Next to none, where little is left to go: a narrow valley is gone along at once (Gauss–Newton).
 pub const UNDAMPED: f64 = 1e-9;
 
@@ -209,7 +209,9 @@ impl Effort {
     /// For starts alone.
     pub const STARTS: Self = Self { iterations: 6, share: 1e-3, floor: 0.0, reuse: false, damping: CAUTIOUS };
     /// For starts that are only judged by.
-    pub const JUDGED: Self = Self { iterations: 5, share: 1e-2, floor: 0.1, reuse: false, damping: CAUTIOUS };
+    pub const JUDGED: Self = Self { iterations: 5, share: 1e-2, floor: 0.1, ..Self::STARTS };
+    /// For starts and numbers: derivatives by the starts change little from one fit to the next.
+    pub const NUMBERS: Self = Self { reuse: true, ..Self::STARTS };
 
     /// Fall of a fit's cost that is not worth another linearisation.
     fn enough(&self, fit: &Fit) -> f64 {
@@ -352,29 +354,22 @@ fn iterate(
     now.covariance = pseudo_inverse(&a);
     let promised = now.cost - left + (b.transpose() * &now.covariance * &b)[(0, 0)];
     let was_known = effort.reuse && now.segments.iter().any(|s| s.columns.is_some());
-    let went = |damping: f64, wants_fresh: bool| Went {
-        damping,
-        promised,
-        is_fresh: !was_known,
-        was_blind,
-        is_idle: false,
-        wants_fresh,
-    };
+    let here = Went { damping, promised, is_fresh: !was_known, was_blind, ..Went::default() };
     for (segment, linear) in now.segments.iter_mut().zip(&linear) {
         segment.columns.clone_from(&linear.columns);
         segment.steps.clone_from(&linear.steps);
     }
     if promised < effort.enough(now) {
         now.converged = !was_blind;
-        return Ok(went(damping, false));
+        return Ok(here);
     }
-    let at_hand = Derivatives { slots: &slots, linear: &linear, promised, was_known };
-    let Some((damping, wants_fresh)) = descend((stage, plant), now, &at_hand, (damping, effort, was_blind)) else {
+    let at_hand = Derivatives { slots: &slots, linear: &linear };
+    let gone = descend((stage, plant), now, &at_hand, (here, effort));
+    if gone.is_none() {
         // No step helps any more: the linear model has no say below the roughness of the cost.
         now.iterations = effort.iterations;
-        return Ok(went(damping, false));
-    };
-    Ok(went(damping, wants_fresh))
+    }
+    Ok(gone.unwrap_or(here))
 }
 
 /// What an iteration knows of the way down.
@@ -383,25 +378,22 @@ struct Derivatives<'a> {
     slots: &'a [(usize, usize)],
     /// The segments about their starts.
     linear: &'a [SegmentLinear],
-    /// Fall of the cost that they promise.
-    promised: f64,
-    /// Whether the starts' columns are those of an earlier model.
-    was_known: bool,
 }
 
-/// The first of more and more damped steps that lowers the cost; the damping to go on with, and whether new derivatives are wanted for that. None
+/// The first of more and more damped steps that lowers the cost: with which damping to go on, and whether new derivatives are wanted for that. None
 /// where no step does.
 fn descend(
     (stage, plant): (&Stage<'_>, &Plant),
     now: &mut Fit,
     at_hand: &Derivatives<'_>,
-    (mut damping, effort, was_blind): (f64, Effort, bool),
-) -> Option<(f64, bool)> {
-    let Derivatives { slots, linear, promised, was_known } = *at_hand;
+    (here, effort): (Went, Effort),
+) -> Option<Went> {
+    let Derivatives { slots, linear } = *at_hand;
+    let (mut damping, was_known) = (here.damping, !here.is_fresh);
     let n = slots.len();
     for trial in 0..DAMPINGS {
         if trial == 2 && was_known {
-            return Some((damping, true));
+            return Some(Went { damping, wants_fresh: true, ..here });
         }
         let linear: Vec<SegmentLinear> = linear.iter().map(|l| l.damped(damping)).collect();
         let mut k = sum_reduced(&linear);
@@ -417,9 +409,9 @@ fn descend(
                 (now.set, now.built, now.segments, now.cost) = (set, built, segments, cost);
                 // A step that had to be shortened says nothing about the end of the way, nor does one along old derivatives.
                 let is_plain = trial == 0 && !was_known;
-                now.converged = !was_blind && is_plain && gained < effort.enough(now);
-                let leads_nowhere = was_known && (trial > 0 || gained < SERVES * promised);
-                return Some(((damping * 0.1).max(UNDAMPED), leads_nowhere));
+                now.converged = !here.was_blind && is_plain && gained < effort.enough(now);
+                let wants_fresh = was_known && (trial > 0 || gained < SERVES * here.promised);
+                return Some(Went { damping: (damping * 0.1).max(UNDAMPED), wants_fresh, ..here });
             }
         }
         damping = (damping * 10.0).max(CAUTIOUS);

@@ -113,7 +113,6 @@ const FAIR: [f64; 2] = [0.02, 2.0];
 const COARSER: f64 = 2.0;
 /// Root mean square by which these may move a residual and still be taken for derivatives, units of noise.
 const ALIKE: f64 = 0.3;
-
 /// Share of that which is always borne.
 const SMOOTH: f64 = 0.1;
 

@@ -4,7 +4,7 @@
 //! further numbers on what no law of the library takes away. Both go here, by the criterion of the search.
 
 use crate::error::DiagnoseError;
-use crate::fit::{CAUTIOUS, Effort, fit};
+use crate::fit::{Effort, fit};
 use crate::hypothesis::Hypothesis;
 use crate::linear::Stage;
 use crate::plant::Plant;
@@ -13,7 +13,7 @@ use crate::standing::{Standing, criterion};
 use crate::work::Until;
 
 /// Fits of a set that may be far off.
-const GLANCE: Effort = Effort { iterations: 2, share: 2e-2, floor: 0.1, reuse: true, damping: CAUTIOUS };
+const GLANCE: Effort = Effort { iterations: 2, share: 2e-2, floor: 0.1, ..Effort::NUMBERS };
 /// Growth of the error by which a member that is taken out shows that it is needed.
 const NECESSARY: f64 = 1.3;
 /// The same by which a plainer law shows that it cannot do what another does.

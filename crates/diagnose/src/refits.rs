@@ -3,7 +3,7 @@
 use crate::attempt::Attempt;
 use crate::choice::{brought_by, by_criterion};
 use crate::error::DiagnoseError;
-use crate::fit::{CAUTIOUS, Effort, Fit, fit};
+use crate::fit::{Effort, Fit, fit};
 use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::{Segment, Stage};
 use crate::plant::Plant;
@@ -226,7 +226,7 @@ impl Refits<'_> {
 
 /// One in so many segments tells how near what remembers may begin, and how far its starts are fitted for that.
 const FEW: usize = 3;
-const BRIEF: Effort = Effort { iterations: 2, share: 1e-2, floor: 0.0, reuse: false, damping: CAUTIOUS };
+const BRIEF: Effort = Effort { iterations: 2, share: 1e-2, ..Effort::STARTS };
 /// Halvings of a promise.
 const SHARES: i32 = 5;
 

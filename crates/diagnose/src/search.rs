@@ -9,7 +9,7 @@
 use crate::attempt::Attempt;
 use crate::choice::{brought_by, by_criterion, is_enough, put_corrections_first, take_further};
 use crate::error::DiagnoseError;
-use crate::fit::{CAUTIOUS, EffectSet, Effort, Fit, UNDAMPED, fit};
+use crate::fit::{EffectSet, Effort, Fit, UNDAMPED, fit};
 use crate::hypothesis::Hypothesis;
 use crate::linear::{Segment, Stage};
 use crate::lost;
@@ -35,11 +35,11 @@ pub struct Limits {
 }
 
 /// Refits of a first look, and of a kept set.
-pub(crate) const LOOK: Effort = Effort { iterations: 6, share: 2e-3, floor: 0.05, reuse: true, damping: CAUTIOUS };
+pub(crate) const LOOK: Effort = Effort { share: 2e-3, floor: 0.05, ..Effort::NUMBERS };
 /// Until it has converged as far as the next round needs it; all samples fit the last set to the end.
-pub(crate) const WHOLE: Effort = Effort { iterations: 10, share: 1e-3, floor: 0.02, reuse: true, damping: CAUTIOUS };
+pub(crate) const WHOLE: Effort = Effort { iterations: 10, floor: 0.02, ..Effort::NUMBERS };
 /// As far as it goes, where more physics would be looked for in what is left.
-const END: Effort = Effort { iterations: 12, share: 1e-3, floor: 0.02, reuse: false, damping: UNDAMPED };
+const END: Effort = Effort { iterations: 12, floor: 0.02, damping: UNDAMPED, ..Effort::STARTS };
 
 /// Difference by halved steps, units of noise, beyond which a fit that has not converged goes on in finer ones.
 const ROUGH: f64 = 0.03;

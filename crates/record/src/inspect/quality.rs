@@ -109,11 +109,11 @@ pub struct Spike {
 const FAR: f64 = 8.0;
 /// What one lone reading leaves in the differences of its neighbourhood from the cubics through theirs.
 const LONE: [f64; 5] = [1.0 / 6.0, -2.0 / 3.0, 1.0, -2.0 / 3.0, 1.0 / 6.0];
-/// How well the neighbourhood must show that: squares that are left, as a share of the size's (a step leaves 0.28), and in variances of a
-/// difference. White noise leaves more than 17 of these once in a thousand. A step of 20 to 30 σ leaves less once in six, and loses one reading
-/// then; smaller ones are no spikes, larger ones do not look so.
-const PATTERN: f64 = 0.04;
+/// How well the neighbourhood must show that: squares that are left, in variances of a difference (white noise leaves more than 17 of these once in a
+/// thousand), but never more than a share of all, whatever the noise: a step leaves 0.13 of them, and a blow of two samples more. Of a force nothing
+/// is put down to noise.
 const BY_NOISE: f64 = 17.0;
+const PATTERN: [f64; 2] = [0.02, 0.06];
 
 /// Readings that stand alone: each differs from the cubic through its four neighbours, and so do these, by −2/3 and
 /// 1/6 of it, as they must if one reading is wrong and the motion is smooth. A step or an impact leaves another pattern.
@@ -130,6 +130,8 @@ pub fn spikes(parts: &[&Series], noise: f64) -> Vec<Spike> {
     if variance <= 0.0 || first.len() < 9 {
         return Vec::new();
     }
+    let is_force = ChannelName::parse(&first.channel).is_some_and(|name| name.quantity.is_force());
+    let by_noise = if is_force { 0.0 } else { BY_NOISE * parts.len() as f64 * variance };
     let places = 4..first.len() - 4;
     let is_far = |i: &usize| parts.iter().map(|s| cubic(&s.values, *i).powi(2)).sum::<f64>() > FAR * FAR * variance;
     let spike_at = |i: usize, other: Option<usize>| {
@@ -139,7 +141,7 @@ pub fn spikes(parts: &[&Series], noise: f64) -> Vec<Spike> {
             size = if parts.len() == 1 { told.size } else { told.size.hypot(size) };
             (all, left) = (all + told.squares, left + told.left);
         }
-        let is_alone = left < (PATTERN * all / squares).max(BY_NOISE * parts.len() as f64 * variance);
+        let is_alone = left < by_noise.clamp(PATTERN[0] * all, PATTERN[1] * all);
         let is_large = size * size > FAR * FAR * variance / squares;
         (is_alone && is_large).then_some(Spike { t: first.times[i], size })
     };
@@ -240,7 +242,7 @@ mod tests {
             }
         };
         assert_eq!(found(&[&wave(0.0, pair)]), [60, 62]);
-        for size in [10.0, 60.0, 300.0] {
+        for size in [10.0, 15.0, 30.0, 60.0, 300.0] {
             assert!(found(&[&wave(0.0, |i| if i < 60 { 0.0 } else { size })]).is_empty(), "a step of {size}");
             assert!(found(&[&wave(0.0, |i| if (60..63).contains(&i) { size } else { 0.0 })]).is_empty(), "a bump");
         }

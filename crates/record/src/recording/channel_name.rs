@@ -87,6 +87,11 @@ impl Quantity {
         }
     }
 
+    /// Whether it is a force: a blow makes it stand out for as little as one sample, where places and rates go on smoothly.
+    pub fn is_force(self) -> bool {
+        matches!(self, Self::JointEffort | Self::SensorForce | Self::SensorTorque)
+    }
+
     /// Whether it was asked for and not measured: it has no noise.
     pub fn is_command(self) -> bool {
         matches!(self, Self::JointEffortCommand | Self::ActuatorCommand)
