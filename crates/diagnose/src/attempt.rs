@@ -47,6 +47,12 @@ impl Attempt {
         self.found = after.set.members.iter().find(is_this).map(|m| m.1.clone()).unwrap_or_default();
     }
 
+    /// Whether it is one of the effects that a round has added, and what these have brought together.
+    pub(crate) fn keep(&mut self, added: &[String], together: Option<f64>) {
+        self.kept = added.contains(&format!("{} at {}", self.name, self.place));
+        self.together = together.filter(|_| self.kept);
+    }
+
     /// Nothing but promised yet.
     pub(crate) fn new(round: usize, h: &Hypothesis, score: &Score, beside: &Fit) -> Self {
         Self {

@@ -93,20 +93,12 @@ pub fn search(
         let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) = open.partition(|h| h.is_dear);
         let (best, mut tried) = refit_best(stage, plant, &now, (cheap, &dear), (limits, round))?;
         attempts.append(&mut tried);
-        let is_worthwhile = |b: &Standing| {
-            let (before, after) = (now.judge(), b.judge());
-            let is_clear = before.cost - after.cost > (worthwhile * before.excess()).max(before.least());
-            b.is_better(&now) && (is_clear || !b.is_comparable(&now))
-        };
-        let Some(best) = best.filter(is_worthwhile) else { break };
+        let Some(best) = best.filter(|b| is_worthwhile(&now, b, worthwhile)) else { break };
         let is_old = |h: &Hypothesis| now.judge().set.findings().any(|(m, _)| m.title() == h.title());
         let members = best.judge().set.findings().map(|(h, _)| h);
         let added: Vec<String> = members.filter(|h| !is_old(h)).map(Hypothesis::title).collect();
         let together = (added.len() > 1).then(|| criterion(now.judge()) - criterion(best.judge()));
-        for attempt in attempts.iter_mut().filter(|t| t.round == round) {
-            attempt.kept = added.contains(&format!("{} at {}", attempt.name, attempt.place));
-            attempt.together = together.filter(|_| attempt.kept);
-        }
+        attempts.iter_mut().filter(|t| t.round == round).for_each(|t| t.keep(&added, together));
         let added = added.join(", ");
         let set = best.judge().set.clone();
         let before = now;
@@ -153,6 +145,13 @@ fn calc_left(stage: &Stage<'_>, plant: &Plant, now: &Standing, whole: &Fit) -> R
 /// Share of what a set leaves that more physics has to take away; `left`: the share of the mismatch that this is.
 fn share_needed(left: f64) -> f64 {
     if left < OF_THE_LAWS { MOST_OF_THE_REST } else { WORTHWHILE }
+}
+
+/// Whether a better standing takes so large a share of the excess away, or is judged by more.
+fn is_worthwhile(now: &Standing, better: &Standing, share: f64) -> bool {
+    let (before, after) = (now.judge(), better.judge());
+    let is_clear = before.cost - after.cost > (share * before.excess()).max(before.least());
+    better.is_better(now) && (is_clear || !better.is_comparable(now))
 }
 
 /// A near standing fitted until it has converged, each time by new derivatives, in steps that suit that: what an unfinished fit leaves, in a narrow
