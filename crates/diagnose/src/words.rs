@@ -38,20 +38,29 @@ fn opening(diagnosis: &Diagnosis) -> String {
     let (scenario, recording) = (&diagnosis.scenario, &diagnosis.recording);
     let judged = diagnosis.judged();
     let (before, whose) = (noise(judged.error.before), whose_words(&judged));
-    match diagnosis.verdict {
-        Verdict::NoMismatch => format!(
+    if diagnosis.verdict == Verdict::NoMismatch {
+        return format!(
             "The scenario “{scenario}” predicts the recording “{recording}” as well as the noise of its sensors allows: \
              its error {whose} is {before} times the noise (1 is perfect), and no effect of the library improves it significantly."
-        ),
-        _ => format!(
-            "The recording “{recording}” differs from the scenario “{scenario}” by more than the noise of its sensors: \
-             {whose} the scenario is wrong by {before} times the noise (1 is perfect){}.",
-            most_wrong(diagnosis, &judged)
-                .map(|(c, e)| format!(", in {} by {}", c.channel, in_unit(c, e.before)))
-                .unwrap_or_default()
-        ),
+        );
     }
+    let wrong = match most_wrong(diagnosis, &judged) {
+        Some((c, e)) if judged.error.before > BEYOND => {
+            format!("wrong by {} in {}, far beyond the noise", in_unit(c, e.before), c.channel)
+        }
+        Some((c, e)) => {
+            format!("wrong by {before} times the noise (1 is perfect), in {} by {}", c.channel, in_unit(c, e.before))
+        }
+        None => format!("wrong by {before} times the noise (1 is perfect)"),
+    };
+    format!(
+        "The recording “{recording}” differs from the scenario “{scenario}” by more than the noise of its sensors: \
+         {whose} the scenario is {wrong}."
+    )
 }
+
+/// Error in units of noise beyond which a sentence tells it in the channel's own unit alone: it says more of the sensor than of the model.
+const BEYOND: f64 = 1e5;
 
 /// The channel that is most wrong, and how wrong it is in its own unit.
 fn most_wrong<'a>(diagnosis: &'a Diagnosis, judged: &Judged) -> Option<(&'a ChannelError, BeforeAfter)> {
@@ -154,15 +163,16 @@ pub fn share_words(explained: &Explained) -> String {
 /// What is left, where, when, and on what it depends.
 fn remainder_words(diagnosis: &Diagnosis) -> String {
     let Some(remainder) = &diagnosis.remainder else { return "Nothing is detected in the remainder.".to_owned() };
-    let error = noise(remainder.error);
+    let error = match remainder.error {
+        error if error > BEYOND => String::new(),
+        error => format!(", {} times the noise in windows,", noise(error)),
+    };
     let Some(first) = remainder.located.first() else {
-        return format!("What remains, {error} times the noise in windows, has no place.");
+        return format!("What remains{error} has no place.");
     };
     let on = if first.condition == "always" { String::new() } else { format!(" ({})", first.condition) };
     let place = place_words(&first.place);
-    format!(
-        "What remains, {error} times the noise in windows, sits most at {place}{on}; no effect of the library takes it away."
-    )
+    format!("What remains{error} sits most at {place}{on}; no effect of the library takes most of it away.")
 }
 
 /// "viscous friction at joint_3 (b = 0.9012 ± 0.0011 N m s/rad)".
@@ -210,14 +220,16 @@ fn improvement(diagnosis: &Diagnosis) -> Option<String> {
             noise(error.windowed.after)
         ),
     };
-    let most = most_wrong(diagnosis, &judged)
-        .map(|(c, e)| format!(", in {} from {} to {}", c.channel, in_unit(c, e.before), in_unit(c, e.after)));
-    Some(format!(
-        "With {what} in the model, the error there falls from {} to {} times the noise{windows}{}.",
-        noise(judged.error.before),
-        noise(judged.error.after),
-        most.unwrap_or_default()
-    ))
+    let (before, after) = (noise(judged.error.before), noise(judged.error.after));
+    let falls = match most_wrong(diagnosis, &judged) {
+        Some((c, e)) => {
+            let own = format!("in {} from {} to {}", c.channel, in_unit(c, e.before), in_unit(c, e.after));
+            let is_beyond = judged.error.before > BEYOND;
+            if is_beyond { own } else { format!("from {before} to {after} times the noise{windows}, {own}") }
+        }
+        None => format!("from {before} to {after} times the noise{windows}"),
+    };
+    Some(format!("With {what} in the model, the error there falls {falls}."))
 }
 
 /// What the data do not decide.

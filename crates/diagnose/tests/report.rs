@@ -97,6 +97,14 @@ fn the_paragraph_says_where_when_what_how_sure_and_what_it_improves() {
     diagnosis.error.holdout.as_mut().unwrap().after = 100.0;
     let said = paragraph(&diagnosis, &evidence);
     assert!(said.contains("in joint.joint_3.position by 0.012 rad."), "{said}");
+    // Multiples of a noise that no rig has say nothing.
+    diagnosis.error.windowed.before = 6e8;
+    let said = paragraph(&diagnosis, &evidence);
+    for part in
+        ["wrong by 0.012 rad in joint.joint_3.position, far beyond the noise", "falls in joint.joint_3.position from"]
+    {
+        assert!(said.contains(part), "{part} in: {said}");
+    }
     let (diagnosis, evidence) = samples::contact();
     let said = paragraph(&diagnosis, &evidence);
     for part in [
