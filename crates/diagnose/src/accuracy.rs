@@ -6,7 +6,7 @@ use crate::judge::Prediction;
 use crate::linear::Stage;
 use crate::reading::Reading;
 use crate::run::Findings;
-use crate::tape::Tape;
+use crate::tape::{Tape, judging};
 use crate::tell::role;
 use std::collections::BTreeMap;
 
@@ -25,7 +25,7 @@ pub(crate) fn errors(findings: &Findings, stage: &Stage<'_>) -> Errors {
         fit: of_role(false, record::Role::Fit).unwrap_or(none),
         holdout: of_role(false, record::Role::Holdout),
         window_s: findings.window,
-        windowed: of_role(true, record::Role::Holdout).or_else(|| of_role(true, record::Role::Fit)).unwrap_or(none),
+        windowed: of_role(true, judging(stage.tapes)).unwrap_or(none),
         runs: stage.tapes.iter().enumerate().map(run).collect(),
         channels: channel_errors(findings, stage),
     }
@@ -33,8 +33,8 @@ pub(crate) fn errors(findings: &Findings, stage: &Stage<'_>) -> Errors {
 
 /// Errors in the channels' own units, the most wrong channel first.
 fn channel_errors(findings: &Findings, stage: &Stage<'_>) -> Vec<ChannelError> {
-    let left_out = stage.tapes.iter().any(|t| t.role == record::Role::Holdout);
-    let tapes: Vec<&Tape> = stage.tapes.iter().filter(|t| (t.role == record::Role::Holdout) == left_out).collect();
+    let judging = judging(stage.tapes);
+    let tapes: Vec<&Tape> = stage.tapes.iter().filter(|t| t.role == judging).collect();
     let pairs = |[before, after]: &[Prediction; 2]| [rms_by_channel(before, &tapes), rms_by_channel(after, &tapes)];
     let (free, windowed) = (pairs(&findings.judgement.whole), pairs(&findings.judgement.windowed));
     let model = &findings.nominal.built.model;

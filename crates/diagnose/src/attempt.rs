@@ -47,9 +47,14 @@ impl Attempt {
         self.found = after.set.members.iter().find(is_this).map(|m| m.1.clone()).unwrap_or_default();
     }
 
+    /// Name and place, as a hypothesis has them.
+    pub(crate) fn title(&self) -> String {
+        format!("{} at {}", self.name, self.place)
+    }
+
     /// Whether it is one of the effects that a round has added, and what these have brought together.
     pub(crate) fn keep(&mut self, added: &[String], together: Option<f64>) {
-        self.kept = added.contains(&format!("{} at {}", self.name, self.place));
+        self.kept = added.contains(&self.title());
         self.together = together.filter(|_| self.kept);
     }
 

@@ -38,8 +38,7 @@ pub(crate) fn take_further(
         } else {
             Standing { whole: tried, ..now.clone() }
         };
-        let name = format!("{} at {}", attempts[at].name, attempts[at].place);
-        stage.work.watch.step(&format!("{name}: {}", errors(&standing)));
+        stage.work.watch.step(&format!("{}: {}", attempts[at].title(), errors(&standing)));
         if standing.follows() && now.follows() {
             attempts[at].tell(&now.whole, &standing.whole);
         }

@@ -221,13 +221,6 @@ pub struct ChannelError {
     pub windowed: BeforeAfter,
 }
 
-impl ChannelError {
-    /// At the horizon that a judgement speaks of.
-    pub fn at(&self, judged: &Judged) -> BeforeAfter {
-        if judged.window_s.is_some() { self.windowed } else { self.free }
-    }
-}
-
 /// Share of the mismatch that the effects found explain, in mean square beyond the noise, over windows each with an initial state of its own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Explained {
@@ -341,6 +334,12 @@ impl Diagnosis {
             true => Judged { error: free, left_out: holdout.is_some(), window_s: None },
             false => Judged { error: *windowed, left_out: holdout.is_some(), window_s: Some(*window_s) },
         }
+    }
+
+    /// The channel that is most wrong, and its error at the horizon of [`Self::judged`], in its own unit.
+    pub fn most_wrong(&self) -> Option<(&ChannelError, BeforeAfter)> {
+        let first = self.error.channels.first()?;
+        Some((first, if self.judged().window_s.is_some() { first.windowed } else { first.free }))
     }
 
     /// The JSON document, indented, with a newline at its end.

@@ -27,7 +27,7 @@ pub mod locate;
 mod lost;
 mod mounts;
 mod noise;
-pub mod number;
+mod number;
 mod output;
 mod pace;
 mod parsimony;

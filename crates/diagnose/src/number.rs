@@ -1,50 +1,9 @@
-//! Numbers for a reader: as many digits as they are worth.
+//! Numbers for a reader, beside those of every page: what only a diagnosis tells.
 
-/// Four significant digits, powers of ten where they help; "–" for what is not finite.
-pub fn short(x: f64) -> String {
-    digits(x, 4)
-}
-
-/// `count` significant digits, trailing zeros left out.
-pub fn digits(x: f64, count: i32) -> String {
-    if !x.is_finite() {
-        return "–".to_owned();
-    }
-    if x == 0.0 {
-        return "0".to_owned();
-    }
-    if !(1e-3..99_999.5).contains(&x.abs()) {
-        let text = format!("{x:.*e}", (count - 1).max(0) as usize);
-        let (mantissa, power) = text.split_once('e').unwrap_or((&text, "0"));
-        let mantissa =
-            if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
-        return minus(&format!("{mantissa}·10{}", superscript(power)));
-    }
-    let places = count - 1 - x.abs().log10().floor() as i32;
-    let coarse = 10_f64.powi((-places).max(0));
-    let text =
-        format!("{:.*}", places.clamp(0, 9) as usize, if coarse > 1.0 { (x / coarse).round() * coarse } else { x });
-    minus(if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text })
-}
-
-/// A value with its standard error, both to the error's second digit: `0.9012 ± 0.0011`, `(1.98 ± 0.02)·10⁻⁴`.
-///
-/// Without a finite error the value stands alone.
-pub fn with_error(value: f64, std_err: f64) -> String {
-    if !(std_err.is_finite() && std_err > 0.0 && value.is_finite()) {
-        return short(value);
-    }
-    let largest = value.abs().max(std_err);
-    let power = if (1e-2..1e5).contains(&largest) { 0 } else { largest.log10().floor() as i32 };
-    let unit = 10_f64.powi(power);
-    let (value, std_err) = (value / unit, std_err / unit);
-    let places = (1 - std_err.log10().floor() as i32).clamp(0, 9) as usize;
-    let text = minus(&format!("{value:.places$} ± {std_err:.places$}"));
-    if power == 0 { text } else { format!("({text})·10{}", superscript(&power.to_string())) }
-}
+pub(crate) use record::page::number::{digits, short, with_error};
 
 /// An error in units of noise: three decimals near 1, fewer above.
-pub fn noise(x: f64) -> String {
+pub(crate) fn noise(x: f64) -> String {
     match x {
         x if !x.is_finite() => "–".to_owned(),
         x if x < 10.0 => format!("{x:.3}"),
@@ -53,23 +12,13 @@ pub fn noise(x: f64) -> String {
     }
 }
 
-/// A share in per cent: `87 %`, `0.4 %`.
-pub fn percent(share: f64) -> String {
+/// A share in per cent: `87 %`, `0.4 %`; what is not zero is not told as zero.
+pub(crate) fn percent(share: f64) -> String {
     if !share.is_finite() {
         return "–".to_owned();
     }
     let x = 100.0 * share;
     if x.abs() < 1.0 && x != 0.0 { format!("{x:.1} %") } else { format!("{x:.0} %") }
-}
-
-fn minus(text: &str) -> String {
-    text.replace('-', "−")
-}
-
-fn superscript(power: &str) -> String {
-    let raised = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let raise = |c: char| c.to_digit(10).map_or(if c == '-' { '⁻' } else { c }, |d| raised[d as usize]);
-    power.chars().map(raise).collect()
 }
 
 #[cfg(test)]

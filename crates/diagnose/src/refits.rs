@@ -138,8 +138,8 @@ impl Refits<'_> {
         }
         for tied in ready.iter_mut().filter(|r| is_tied(r)) {
             tied.fit = fit(self.stage, self.plant, tied.fit.set.clone(), tied.fit.segments.clone(), WHOLE)?;
-            let Attempt { name, place, .. } = &self.attempts[tied.attempt];
-            self.say(&format!("to the end: {name} at {place}: error {:.4}", tied.fit.rms()));
+            let title = self.attempts[tied.attempt].title();
+            self.say(&format!("to the end: {title}: error {:.4}", tied.fit.rms()));
         }
         ready.sort_by(by_criterion);
         Ok(())
@@ -164,7 +164,7 @@ impl Refits<'_> {
         if tried.cost >= here.cost {
             return None;
         }
-        let at = |title: &String| self.attempts.iter().position(|a| format!("{} at {}", a.name, a.place) == *title);
+        let at = |title: &String| self.attempts.iter().position(|a| a.title() == *title);
         let places: Vec<Option<usize>> = titles.iter().map(at).collect();
         let kept = (here.cost - tried.cost) / ensemble.score.max(f64::MIN_POSITIVE);
         for (place, part) in places.iter().zip(&ensemble.parts).filter_map(|(p, part)| p.map(|p| (p, part))) {

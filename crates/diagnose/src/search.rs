@@ -85,15 +85,16 @@ pub fn search(
     }
     let is_open = |now: &Standing| now.judge().is_significant() && now.judge().set.findings().count() < limits.effects;
     while is_open(&now) && !stage.work.is_spent(Until::Search) {
-        let left = calc_left(stage, plant, &now, &at_first)?;
-        let worthwhile = share_needed(left);
         let all = hypotheses(stage, &now.windows)?;
         known.extend(all.iter().cloned());
         let open = all.into_iter().filter_map(|h| still_open(h, &now.judge().set));
         let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) = open.partition(|h| h.is_dear);
         let (best, mut tried) = refit_best(stage, plant, &now, (cheap, &dear), (limits, round))?;
         attempts.append(&mut tried);
-        let Some(best) = best.filter(|b| is_worthwhile(&now, b, worthwhile)) else { break };
+        let Some(best) = best else { break };
+        if !is_worthwhile((stage, plant), &at_first, (&now, &best))? {
+            break;
+        }
         let is_old = |h: &Hypothesis| now.judge().set.findings().any(|(m, _)| m.title() == h.title());
         let members = best.judge().set.findings().map(|(h, _)| h);
         let added: Vec<String> = members.filter(|h| !is_old(h)).map(Hypothesis::title).collect();
@@ -142,16 +143,21 @@ fn calc_left(stage: &Stage<'_>, plant: &Plant, now: &Standing, whole: &Fit) -> R
     Ok(left)
 }
 
-/// Share of what a set leaves that more physics has to take away; `left`: the share of the mismatch that this is.
-fn share_needed(left: f64) -> f64 {
-    if left < OF_THE_LAWS { MOST_OF_THE_REST } else { WORTHWHILE }
-}
-
-/// Whether a better standing takes so large a share of the excess away, or is judged by more.
-fn is_worthwhile(now: &Standing, better: &Standing, share: f64) -> bool {
+/// Whether a better standing takes enough of the excess away, or is judged by more; `whole`: whole runs of the nominal model.
+fn is_worthwhile(
+    (stage, plant): (&Stage<'_>, &Plant),
+    whole: &Fit,
+    (now, better): (&Standing, &Standing),
+) -> Result<bool, DiagnoseError> {
+    if !better.is_better(now) || !better.is_comparable(now) {
+        return Ok(better.is_better(now));
+    }
     let (before, after) = (now.judge(), better.judge());
-    let is_clear = before.cost - after.cost > (share * before.excess()).max(before.least());
-    better.is_better(now) && (is_clear || !better.is_comparable(now))
+    let taken = before.cost - after.cost;
+    if taken <= (WORTHWHILE * before.excess()).max(before.least()) {
+        return Ok(false);
+    }
+    Ok(taken > MOST_OF_THE_REST * before.excess() || calc_left(stage, plant, now, whole)? >= OF_THE_LAWS)
 }
 
 /// A near standing fitted until it has converged, each time by new derivatives, in steps that suit that: what an unfinished fit leaves, in a narrow

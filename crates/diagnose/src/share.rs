@@ -10,7 +10,7 @@
 use crate::diagnosis::Explained;
 use crate::fit::Fit;
 use crate::judge::Judgement;
-use crate::tape::Tape;
+use crate::tape::{Tape, judging};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use record::Role;
@@ -52,9 +52,9 @@ impl Window {
 
 /// What the corrected model explains, and whether it helps.
 pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, window_s: f64) -> (Explained, bool) {
-    let left_out = tapes.iter().any(|t| t.role == Role::Holdout);
-    let is_judged = |run: usize| (tapes[run].role == Role::Holdout) == left_out;
-    let runs = windows_of(judgement, is_judged);
+    let judging = judging(tapes);
+    let left_out = judging == Role::Holdout;
+    let runs = windows_of(judgement, |run| tapes[run].role == judging);
     let all = sum(runs.values().flatten());
     let interval = interval(&runs);
     let harmed = runs.iter().filter(|(_, w)| sum(w.iter()).is_harmed(found.doubt));

@@ -161,6 +161,11 @@ pub(crate) fn load(plant: &mut Plant, set: &RecordingSet) -> Result<(Vec<Tape>, 
     Ok((tapes, plant.build(&[])?))
 }
 
+/// The role of the runs that judge: those left out of the fit, or the others where there are none.
+pub(crate) fn judging(tapes: &[Tape]) -> Role {
+    if tapes.iter().any(|t| t.role == Role::Holdout) { Role::Holdout } else { Role::Fit }
+}
+
 /// Ticks of an even clock at which samples were taken, those that were left out counted too, so that sensors which read together stay
 /// together when they are thinned; the numbers of the samples where the clock is not even.
 fn ticks_of(times: &[f64]) -> Vec<usize> {

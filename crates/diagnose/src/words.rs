@@ -1,7 +1,7 @@
 //! The verdict in one paragraph of plain words, from the data.
 
 use crate::diagnosis::{
-    BeforeAfter, ChannelError, Diagnosis, Explained, Found, Judged, Located, ParamValue, Rival, StdErr, Verdict,
+    ChannelError, Diagnosis, Explained, Found, Judged, Located, ParamValue, Rival, StdErr, Verdict,
 };
 use crate::evidence::Evidence;
 use crate::number::{digits, noise, percent, with_error};
@@ -44,14 +44,13 @@ fn opening(diagnosis: &Diagnosis) -> String {
              its error {whose} is {before} times the noise (1 is perfect), and no effect of the library improves it significantly."
         );
     }
-    let wrong = match most_wrong(diagnosis, &judged) {
+    let times = format!("wrong by {before} times the noise (1 is perfect)");
+    let wrong = match diagnosis.most_wrong() {
         Some((c, e)) if judged.error.before > BEYOND => {
             format!("wrong by {} in {}, far beyond the noise", in_unit(c, e.before), c.channel)
         }
-        Some((c, e)) => {
-            format!("wrong by {before} times the noise (1 is perfect), in {} by {}", c.channel, in_unit(c, e.before))
-        }
-        None => format!("wrong by {before} times the noise (1 is perfect)"),
+        Some((c, e)) => format!("{times}, in {} by {}", c.channel, in_unit(c, e.before)),
+        None => times,
     };
     format!(
         "The recording “{recording}” differs from the scenario “{scenario}” by more than the noise of its sensors: \
@@ -61,12 +60,6 @@ fn opening(diagnosis: &Diagnosis) -> String {
 
 /// Error in units of noise beyond which a sentence tells it in the channel's own unit alone: it says more of the sensor than of the model.
 const BEYOND: f64 = 1e5;
-
-/// The channel that is most wrong, and how wrong it is in its own unit.
-fn most_wrong<'a>(diagnosis: &'a Diagnosis, judged: &Judged) -> Option<(&'a ChannelError, BeforeAfter)> {
-    let first = diagnosis.error.channels.first()?;
-    Some((first, first.at(judged)))
-}
 
 /// "0.24 m": an error to two digits.
 fn in_unit(channel: &ChannelError, error: f64) -> String {
@@ -220,14 +213,15 @@ fn improvement(diagnosis: &Diagnosis) -> Option<String> {
             noise(error.windowed.after)
         ),
     };
-    let (before, after) = (noise(judged.error.before), noise(judged.error.after));
-    let falls = match most_wrong(diagnosis, &judged) {
-        Some((c, e)) => {
-            let own = format!("in {} from {} to {}", c.channel, in_unit(c, e.before), in_unit(c, e.after));
-            let is_beyond = judged.error.before > BEYOND;
-            if is_beyond { own } else { format!("from {before} to {after} times the noise{windows}, {own}") }
-        }
-        None => format!("from {before} to {after} times the noise{windows}"),
+    let times =
+        format!("from {} to {} times the noise{windows}", noise(judged.error.before), noise(judged.error.after));
+    let own = diagnosis
+        .most_wrong()
+        .map(|(c, e)| format!("in {} from {} to {}", c.channel, in_unit(c, e.before), in_unit(c, e.after)));
+    let falls = match own {
+        Some(own) if judged.error.before > BEYOND => own,
+        Some(own) => format!("{times}, {own}"),
+        None => times,
     };
     Some(format!("With {what} in the model, the error there falls {falls}."))
 }

@@ -13,7 +13,7 @@
 
 use crate::{Key, KeyEffect};
 use diagnose::diagnosis::{Found, ParamValue, StdErr};
-use diagnose::number::short;
+use record::page::number::short;
 use serde::Serialize;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

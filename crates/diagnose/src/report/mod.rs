@@ -10,7 +10,7 @@ mod heat;
 mod ranking;
 mod trust;
 
-use crate::diagnosis::{Diagnosis, Verdict};
+use crate::diagnosis::{BeforeAfter, Diagnosis, Verdict};
 use crate::evidence::Evidence;
 use crate::number::{noise, percent};
 use crate::words::{headline, paragraph, parameter_words, place_words, share_percent, when_words};
@@ -116,23 +116,19 @@ fn tiles(diagnosis: &Diagnosis, evidence: &Evidence) -> Vec<(&'static str, Strin
     }
     let (error, judged) = (&diagnosis.error, diagnosis.judged());
     let label = if judged.left_out { "error on runs not used" } else { "error on the runs used" };
-    let arrow = |e: crate::diagnosis::BeforeAfter| match diagnosis.effects.is_empty() {
-        true => noise(e.before),
-        false => format!("{} → {}", noise(e.before), noise(e.after)),
+    let arrow_of = |e: BeforeAfter, text: fn(f64) -> String| match diagnosis.effects.is_empty() {
+        true => text(e.before),
+        false => format!("{} → {}", text(e.before), text(e.after)),
     };
+    let arrow = |e: BeforeAfter| arrow_of(e, noise);
     let window = crate::number::short(error.window_s);
     let below = match judged.window_s {
         Some(_) => format!("× noise, in windows of {window} s: whole runs are not predictable"),
         None => format!("× noise, free run; {} in windows of {window} s", arrow(error.windowed)),
     };
     tiles.push((label, arrow(judged.error), below));
-    if let Some(most) = diagnosis.error.channels.first().filter(|_| diagnosis.verdict != Verdict::NoMismatch) {
-        let error = most.at(&judged);
-        let value = if diagnosis.effects.is_empty() {
-            crate::number::digits(error.before, 2)
-        } else {
-            format!("{} → {}", crate::number::digits(error.before, 2), crate::number::digits(error.after, 2))
-        };
+    if let Some((most, error)) = diagnosis.most_wrong().filter(|_| diagnosis.verdict != Verdict::NoMismatch) {
+        let value = arrow_of(error, |x| crate::number::digits(x, 2));
         tiles.push(("most wrong channel", format!("{value} {}", most.unit), format!("rms, {}", most.channel)));
     }
     tiles

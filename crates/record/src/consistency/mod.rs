@@ -81,9 +81,7 @@ pub struct Consistency {
 
 /// Every pair of position and rate of a set. `sigma`: noise of a channel, rounding included; `None` leaves the pair out.
 pub fn check(set: &RecordingSet, sigma: &Sigma<'_>) -> Vec<Consistency> {
-    let found: Vec<Option<Consistency>> =
-        pairs::find(set).par_iter().map(|pair| check_pair(set, pair, sigma)).collect();
-    found.into_iter().flatten().collect()
+    pairs::find(set).par_iter().filter_map(|pair| check_pair(set, pair, sigma)).collect()
 }
 
 /// Noise of a channel by its name, where it is known.

@@ -70,8 +70,7 @@ pub(super) fn noise(pair: &Pair, sigma: &super::Sigma<'_>) -> Option<Noise> {
 
 /// The samples of a pair, run by run.
 pub(super) fn tracks(set: &RecordingSet, pair: &Pair, noise: &Noise) -> Vec<Track> {
-    let all: Vec<Option<Track>> = set.runs.par_iter().map(|run| track(run, pair, noise)).collect();
-    all.into_iter().flatten().collect()
+    set.runs.par_iter().filter_map(|run| track(run, pair, noise)).collect()
 }
 
 fn track(run: &RecordedRun, pair: &Pair, noise: &Noise) -> Option<Track> {
