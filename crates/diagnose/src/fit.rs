@@ -304,7 +304,7 @@ fn fit_starts(stage: &Stage<'_>, set: EffectSet, built: Built, segments: &[Segme
 }
 
 /// First steps of the difference quotients.
-fn first_sizes(set: &EffectSet) -> Vec<f64> {
+pub(crate) fn first_sizes(set: &EffectSet) -> Vec<f64> {
     let size = |(m, k): &(usize, usize)| {
         let (h, x) = &set.members[*m];
         let screened = h.screens.iter().flat_map(|s| &s.columns).filter(|c| !c.secant && c.direction[*k] != 0.0);

@@ -7,6 +7,7 @@
 //! of [`summary_text`] and the scenario of [`patched_toml`]. The crate `score` judges diagnoses against answer keys.
 
 mod accuracy;
+mod along;
 mod approaches;
 pub mod attempt;
 pub mod catalogue;
@@ -21,6 +22,7 @@ pub mod facts;
 pub mod fit;
 pub mod guess;
 pub mod hypothesis;
+pub mod identify;
 pub mod judge;
 pub mod linear;
 pub mod locate;
@@ -41,6 +43,7 @@ pub mod report;
 pub mod run;
 pub mod screen;
 pub mod search;
+pub mod select;
 mod settle;
 mod share;
 pub mod standing;

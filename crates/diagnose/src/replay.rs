@@ -75,7 +75,8 @@ pub fn observe(
     mut look: impl FnMut(usize, &Event, &Value),
 ) -> Result<(), DiagnoseError> {
     let sensors = sensors_of(built, tape)?;
-    let shown = measure(built, tape, start, (span, pace), &sensors, |i, event, truth| {
+    let events = events_in(tape, span, &sensors);
+    let shown = measure(built, (tape, start), (span, pace), (&sensors, &events), |i, event, truth| {
         look(i, event, &Value::from(sensors[event.reading as usize].1.apply(truth)));
     });
     shown.map(|_| ())
@@ -84,8 +85,72 @@ pub fn observe(
 /// Replays a span for what its sensors would read.
 pub fn readings(built: &Built, tape: &Tape, start: &Start, span: Span, pace: Pace) -> Result<Readings, DiagnoseError> {
     let mut values = vec![Measured::Scalar(f64::NAN); tape.range(span).len()];
-    let work = measure(built, tape, start, (span, pace), &sensors_of(built, tape)?, |i, _, truth| values[i] = *truth)?;
-    Ok(Readings { values, work })
+    let sensors = sensors_of(built, tape)?;
+    let events = events_in(tape, span, &sensors);
+    let replay = measure(built, (tape, start), (span, pace), (&sensors, &events), |i, _, truth| values[i] = *truth)?;
+    Ok(Readings { values, work: replay.world.state().work })
+}
+
+/// A replay of one interval: what sensors with the faults of the model read of some events, and the state at its end.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// Residuals of the events in their order, units of noise.
+    pub residuals: Vec<f64>,
+    /// The state at the end of the interval.
+    pub end: Start,
+    /// What was computed for it.
+    pub work: sim::Work,
+}
+
+/// Replays an interval for the residuals of some of the tape's events and for its end; events that a late sensor took before it are read at
+/// its begin.
+pub fn shoot(
+    built: &Built,
+    tape: &Tape,
+    start: &Start,
+    (span, members): (Span, &[u32]),
+    pace: Pace,
+) -> Result<Shot, DiagnoseError> {
+    let sensors = sensors_of(built, tape)?;
+    let late = |(i, m): (usize, &u32)| {
+        let event = tape.events[*m as usize];
+        (i, Event { time: told(&event, &sensors).clamp(span.from, span.to), ..event })
+    };
+    let mut events: Vec<(usize, Event)> = members.iter().enumerate().map(late).collect();
+    events.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
+    let mut offsets = vec![0];
+    members.iter().for_each(|m| {
+        let width = tape.readings[tape.events[*m as usize].reading as usize].width();
+        offsets.push(offsets[offsets.len() - 1] + width);
+    });
+    let mut residuals = vec![f64::NAN; offsets[members.len()]];
+    let mut replay = measure(built, (tape, start), (span, pace), (&sensors, &events), |i, event, truth| {
+        let value = Value::from(sensors[event.reading as usize].1.apply(truth));
+        tape.readings[event.reading as usize].write_residual(
+            event.sample as usize,
+            &value,
+            &mut residuals[offsets[i]..],
+        );
+    })?;
+    replay.advance_to(span.to)?;
+    Ok(Shot { residuals, end: Start::of(built, tape.index, &replay.world), work: replay.world.state().work })
+}
+
+/// When what an event tells was so: late sensors read what was.
+fn told(event: &Event, sensors: &[(Gauge, SensorModel)]) -> f64 {
+    event.time - sensors[event.reading as usize].1.delay
+}
+
+/// The events of a tape by the intervals between some ascending instants in which they tell; those of before the first belong to the first,
+/// those of after the last to the last.
+pub fn members_between(built: &Built, tape: &Tape, instants: &[f64]) -> Result<Vec<Vec<u32>>, DiagnoseError> {
+    let sensors = sensors_of(built, tape)?;
+    let mut members = vec![Vec::new(); instants.len() - 1];
+    for (i, event) in tape.events.iter().enumerate() {
+        let after = instants.partition_point(|t| *t <= told(event, &sensors) + SAME);
+        members[after.clamp(1, instants.len() - 1) - 1].push(i as u32);
+    }
+    Ok(members)
 }
 
 /// Residuals of faultless readings when the sensors have the faults of a model, but for delays.
@@ -111,15 +176,13 @@ fn sensors_of(built: &Built, tape: &Tape) -> Result<Vec<(Gauge, SensorModel)>, D
 }
 
 /// Replays a span and hands what every sensor is given to read to `look`; what that took.
-fn measure(
+fn measure<'a>(
     built: &Built,
-    tape: &Tape,
-    start: &Start,
+    (tape, start): (&'a Tape, &Start),
     (span, pace): (Span, Pace),
-    sensors: &[(Gauge, SensorModel)],
+    (sensors, events): (&[(Gauge, SensorModel)], &[(usize, Event)]),
     mut look: impl FnMut(usize, &Event, &Measured),
-) -> Result<sim::Work, DiagnoseError> {
-    let events = events_in(tape, span, sensors);
+) -> Result<Replay<'a>, DiagnoseError> {
     let mut replay = Replay::new(built, tape, start, span.from, pace);
     let may_hold = !replay.mounts.rests.is_empty();
     let gauge_of = |event: &Event| &sensors[event.reading as usize].0;
@@ -166,7 +229,7 @@ fn measure(
         }
         look(*i, event, &gauge.read(&replay.world));
     }
-    Ok(replay.world.state().work)
+    Ok(replay)
 }
 
 /// Starts at some ascending instants of a replay, for windows that begin there.

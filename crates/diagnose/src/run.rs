@@ -5,6 +5,7 @@
 //! 3. missing forces say where, the search says what, first in windows, then over whole runs where these follow;
 //! 4. every run, held-out ones too, is predicted by the nominal and by the corrected model.
 
+use crate::along;
 use crate::attempt::Attempt;
 use crate::catalogue::{self, hypotheses};
 use crate::curves;
@@ -14,6 +15,7 @@ use crate::evidence::{self, Evidence};
 use crate::facts::Facts;
 use crate::fit::{EffectSet, Effort, Fit, UNDAMPED, fit};
 use crate::hypothesis::Hypothesis;
+use crate::identify::fit::Fitted;
 use crate::judge::{Judgement, judge};
 use crate::linear::{Segment, Stage, Steps};
 use crate::locate::{Located, locate, locate_in, places};
@@ -26,7 +28,7 @@ use crate::replay::Pace;
 use crate::search::{Limits, WHOLE, errors, search};
 use crate::share;
 use crate::standing::{Standing, fit_in_turns, follow};
-use crate::stretches::{self, Stretches, cut};
+use crate::stretches::{self, Stretches, cut, joined};
 use crate::tape::{Tape, load};
 use crate::tell;
 use crate::uncertainty::{self, Uncertainty};
@@ -87,7 +89,8 @@ pub fn diagnose_with(
     let work = Work::new(watch, effort);
     let [first, second] = WINDOWS;
     let mut found = diagnose_in(scenario.clone(), set, &work, first)?;
-    if merit(&found.0) >= SETTLED || set.window_s.is_some() {
+    let needs_no_windows = along::may_follow(&Plant::new(scenario.clone()).build(&[])?);
+    if merit(&found.0) >= SETTLED || set.window_s.is_some() || needs_no_windows {
         return Ok(found);
     }
     let is_told = work.was_ended();
@@ -134,6 +137,10 @@ fn diagnose_in(
     said.extend(said_of_scheme(own, &plant));
     let pace = discretisation.pace;
     let mut stage = Stage { tapes: &thinned, pace, work, doubt };
+    if along::may_follow(&built) {
+        let begun = Begun { tapes, thinned: thinned.clone(), doubt, window, discretisation, nominal, said };
+        return diagnose_along(&stage, &plant, (begun, set), (&inspection, clock));
+    }
     let Sought { nominal, whole, located, standing, attempts } =
         seek(&mut stage, &plant, (nominal, &tapes, window), &mut clock)?;
     clock.stage("fit to all samples", 0.75);
@@ -174,6 +181,89 @@ fn diagnose_in(
         discretisation,
     };
     Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
+}
+
+/// The same along whole runs, where parts do not touch.
+fn diagnose_along(
+    few: &Stage<'_>,
+    plant: &Plant,
+    (begun, set): (Begun, &RecordingSet),
+    (inspection, mut clock): (&record::inspect::Inspection, Clock<'_>),
+) -> Result<(Diagnosis, Evidence), DiagnoseError> {
+    let Begun { tapes, window, discretisation, nominal, mut said, .. } = begun;
+    let work = few.work;
+    clock.stage("locate the missing force", 0.15);
+    let own = Facts::new(&nominal.built, few.tapes);
+    let located = locate(few, plant, &nominal, places(&own, window))?;
+    clock.stage("search", 0.25);
+    let course = along::seek(few, plant, &own)?;
+    clock.stage("fit to all samples", 0.7);
+    let stage = Stage { tapes: &tapes, ..*few };
+    let thin_best = course.found.best.clone();
+    let course = along::fit_to_all((few, &stage), plant, &own, course)?;
+    if work.was_ended() {
+        said.push(SPENT.to_owned());
+    }
+    clock.stage("predict every run", 0.8);
+    let best = &course.found.best;
+    let known = along::windows(few, plant, (&own, window), &course.found.nominal)?;
+    let known = Fit { set: EffectSet::default(), built: nominal.built.clone(), ..known };
+    let corrected = along::windows(few, plant, (&own, window), &Fitted { set: best.set.clone(), ..thin_best })?;
+    let runs: Vec<Segment> =
+        joined(&corrected.segments, few.tapes).into_iter().filter(|s| few.tapes[s.run].role == Role::Fit).collect();
+    let whole = follow(few, plant, best.set.frozen(), &runs)?;
+    let follows = whole.rms() < lost::NEAR;
+    let windows = along::windows_of(few, best, window);
+    let found = along::as_fit(few, best, if follows { whole.segments } else { windows });
+    let corrected = Fit { set: best.set.clone(), built: best.built.clone(), ..corrected };
+    let judgement = judge((few, &stage), plant, ([&known, &known], &corrected), (window, follows))?;
+    let left = left_by((few, few), plant, (&nominal, &located), &judgement)?;
+    clock.stage("judge the numbers", 0.97);
+    let (explained, helps) = share::explained(&judgement, &tapes, &found, window);
+    let verdict = verdict_along(&course, &judgement, (&found, follows), helps);
+    let from_profile = vec![false; best.set.slots().len()];
+    let uncertainty = Uncertainty { covariance: best.covariance.clone(), from_profile, optimism: f64::NAN };
+    clock.stage("write", 1.0);
+    let findings = Findings {
+        title: set.title.clone(),
+        window,
+        verdict,
+        located,
+        nominal,
+        found,
+        follows,
+        attempts: along::attempts(&course),
+        judgement,
+        left,
+        uncertainty,
+        explained,
+        said,
+        timings: clock.timings,
+        discretisation,
+    };
+    Ok(tell::tell(&findings, &stage, inspection, &plant.scenario.name, &set.folder))
+}
+
+/// What was detected, what was found, and what of it remains.
+fn verdict_along(
+    course: &along::Course,
+    judgement: &Judgement,
+    (found, follows): (&Fit, bool),
+    helps: bool,
+) -> Verdict {
+    let [before, after] = course.left;
+    if !found.set.has_findings() {
+        return if before.rise > before.bound { Verdict::Unknown } else { Verdict::NoMismatch };
+    }
+    let [nominal, corrected] = judgement.rms(!follows, |run| found.has_run(run));
+    let left = (corrected * corrected - 1.0) / (nominal * nominal - 1.0).max(1e-9);
+    if after.rise <= after.bound || left < NEXT_TO_NOTHING && corrected < RIGHT {
+        Verdict::Explained
+    } else if helps {
+        Verdict::PartlyExplained
+    } else {
+        Verdict::Unknown
+    }
 }
 
 /// How sure the numbers are; what helps nowhere is not told, nor how sure its numbers are.

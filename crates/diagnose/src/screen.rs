@@ -267,7 +267,11 @@ fn own_columns(stage: &Stage<'_>, segment: &Segment, base: &[Freedom], probe: &P
 }
 
 /// What a point's information matrix says.
-fn find_shown(hypothesis: &Hypothesis, point: &ScreenPoint, (a, inverse): (&DMatrix<f64>, &DMatrix<f64>)) -> Shown {
+pub(crate) fn find_shown(
+    hypothesis: &Hypothesis,
+    point: &ScreenPoint,
+    (a, inverse): (&DMatrix<f64>, &DMatrix<f64>),
+) -> Shown {
     let eigenvalues = scaled(a).1.symmetric_eigenvalues();
     let condition = eigenvalues.max() / eigenvalues.min().max(f64::EPSILON);
     let error = |i: usize| if inverse[(i, i)] > 0.0 { inverse[(i, i)].sqrt() } else { f64::INFINITY };

@@ -107,6 +107,9 @@ impl Start {
             bristles: Vec::new(),
             still: vec![0.0; state.bases.len()],
         };
+        if start.memory.is_empty() && state.bristles.is_empty() {
+            return start;
+        }
         let mut fresh = start.world(built, run);
         fresh.commands_mut().copy_from_slice(&state.commands);
         fresh.settle_effects();
@@ -140,6 +143,16 @@ impl Start {
         start.q.extend(&nominal.0[known_q..]);
         start.v.extend(&nominal.1[known_v..]);
         start
+    }
+
+    /// Takes over from another start what a model has beside another one: memory, and joints of parts inside.
+    pub fn remember(&mut self, before: &Self, known: &Built) {
+        let take = |own: &mut [f64], before: &[f64], known: usize| {
+            own.iter_mut().zip(before).skip(known).for_each(|(own, before)| *own = *before);
+        };
+        take(&mut self.memory, &before.memory, count_memory(known));
+        take(&mut self.q, &before.q, known.start.q.len());
+        take(&mut self.v, &before.v, known.start.v.len());
     }
 
     /// A world at this start.
@@ -256,6 +269,22 @@ impl Start {
         let mut start = self.clone();
         freedoms.iter().zip(by).for_each(|(f, d)| start.shift(*f, *d));
         start
+    }
+
+    /// What has to be added to another start, coordinate by coordinate, to come to this one.
+    pub fn difference(&self, other: &Self, freedoms: &[Freedom]) -> Vec<f64> {
+        let turn = |b: usize| spatial::log_rotation(&(self.bases[b].rotation * other.bases[b].rotation.inverse()));
+        let of = |freedom: &Freedom| match *freedom {
+            Freedom::Turn(b, axis) => turn(b)[axis],
+            Freedom::Place(b, axis) => self.bases[b].translation.vector[axis] - other.bases[b].translation.vector[axis],
+            Freedom::Spin(b, axis) => self.twists[b].ang[axis] - other.twists[b].ang[axis],
+            Freedom::Speed(b, axis) => self.twists[b].lin[axis] - other.twists[b].lin[axis],
+            Freedom::Joint(i) => self.q[i] - other.q[i],
+            Freedom::Rate(i) => self.v[i] - other.v[i],
+            Freedom::Memory(i) => self.memory[i] - other.memory[i],
+            Freedom::Bristle(i, axis) => self.bristles[i][axis] - other.bristles[i][axis],
+        };
+        freedoms.iter().map(of).collect()
     }
 
     fn shift(&mut self, freedom: Freedom, by: f64) {

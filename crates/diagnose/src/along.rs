@@ -1,0 +1,179 @@
+//! A search along whole runs, for rigs whose parts do not touch, and what the rest of a diagnosis asks of it.
+
+use crate::attempt::Attempt;
+use crate::catalogue;
+use crate::error::DiagnoseError;
+use crate::facts::Facts;
+use crate::fit::Fit;
+use crate::identify::fit::{Fitted, Problem, Reach};
+use crate::identify::track::Frame;
+use crate::linear::{Segment, Stage, Steps};
+use crate::plant::{Built, Plant};
+use crate::replay::Span;
+use crate::select::search::{Found, Remainder, hypotheses_of, remainder, search};
+use record::Role;
+use std::sync::Arc;
+
+/// What a search along whole runs has found.
+pub(crate) struct Course {
+    /// The nominal model and the best set along the runs that are fitted.
+    pub found: Found,
+    /// What each of them leaves beyond noise.
+    pub left: [Remainder; 2],
+}
+
+/// Iterations of a last fit, to all samples.
+const LAST: Reach = Reach { iterations: 4, reuse: false };
+/// Iterations with the nominal numbers free within their tolerances.
+const WITHIN: Reach = Reach { iterations: 6, reuse: true };
+
+/// Whether a model may be followed from interval to interval: contacts and mechanisms remember what a state does not hold.
+pub(crate) fn may_follow(built: &Built) -> bool {
+    built.model.scene.pairs().is_empty() && built.model.mechanisms.is_empty()
+}
+
+/// Searches along the runs that may be fitted.
+pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Course, DiagnoseError> {
+    let problem = problem(stage, plant, own, Role::Fit);
+    let mut nominal = problem.begin()?;
+    let left = remainder(&problem, &nominal)?;
+    stage.work.watch.step(&format!("the nominal model leaves {:.1}, noise at most {:.1}", left.rise, left.bound));
+    let within = catalogue::within(&Facts::new(&nominal.built, stage.tapes), &plant.scenario.tolerance);
+    if !within.members.is_empty() && left.rise > left.bound {
+        nominal = problem.fit(&nominal, within, WITHIN)?;
+    }
+    let hypotheses = |now: &Fitted| hypotheses_of(&now.built, stage.tapes, own);
+    let found = search(&problem, nominal, &hypotheses)?;
+    let after = remainder(&problem, &found.best)?;
+    Ok(Course { found, left: [left, after] })
+}
+
+fn problem<'a>(stage: &Stage<'a>, plant: &'a Plant, own: &Facts, role: Role) -> Problem<'a> {
+    let runs = (0..stage.tapes.len()).filter(|r| stage.tapes[*r].role == role).collect();
+    Problem::new(*stage, plant, own, runs)
+}
+
+/// The last fit, to all samples.
+pub(crate) fn fit_to_all(
+    (thin, all): (&Stage<'_>, &Stage<'_>),
+    plant: &Plant,
+    own: &Facts,
+    course: Course,
+) -> Result<Course, DiagnoseError> {
+    let scalars = |stage: &Stage<'_>| stage.tapes.iter().map(|t| t.offsets[t.offsets.len() - 1]).sum::<usize>();
+    let best = &course.found.best;
+    if !best.set.has_findings() || scalars(all) <= scalars(thin) || scalars(all) > MOST {
+        return Ok(course);
+    }
+    let problem = problem(all, plant, own, Role::Fit);
+    let best = problem.fit(&problem.onto(best)?, best.set.clone(), LAST)?;
+    let left = [course.left[0], remainder(&problem, &best)?];
+    Ok(Course { found: Found { best, ..course.found }, left })
+}
+
+/// Scalars beyond which an even selection of them has to do.
+const MOST: usize = 2_000_000;
+
+/// Windows of all runs with the states that a set has there; those of runs that were left out follow its numbers as they are.
+pub(crate) fn windows(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    (own, window): (&Facts, f64),
+    fitted: &Fitted,
+) -> Result<Fit, DiagnoseError> {
+    let mut fits = vec![fitted.clone()];
+    let left_out = problem(stage, plant, own, Role::Holdout);
+    if !left_out.runs.is_empty() {
+        fits.push(left_out.along(fitted, &fitted.set)?);
+    }
+    let segments = fits.iter().flat_map(|f| windows_of(stage, f, window)).collect();
+    Ok(as_fit(stage, fitted, segments))
+}
+
+/// Windows of the runs of a fit.
+pub(crate) fn windows_of(stage: &Stage<'_>, fitted: &Fitted, window: f64) -> Vec<Segment> {
+    let frame = Frame { stage, built: &fitted.built, freedoms: &fitted.freedoms, forces: &fitted.forces };
+    let of_run = |track: &crate::identify::track::Track| {
+        let spans = crate::linear::windows(&stage.tapes[track.run], Some(window));
+        let segment = |span: Span| {
+            let start = frame.state_at(track, span.from)?;
+            let guess = Arc::new(start.clone());
+            let steps = Steps::default();
+            Some(Segment { run: track.run, span, start, guess, weight: 1.0, columns: None, steps })
+        };
+        spans.into_iter().filter_map(segment).collect::<Vec<_>>()
+    };
+    fitted.tracks.iter().flat_map(of_run).collect()
+}
+
+/// A fit of segments as the report asks for it.
+pub(crate) fn as_fit(stage: &Stage<'_>, fitted: &Fitted, segments: Vec<Segment>) -> Fit {
+    let (count, noise) = stage.noise(&segments);
+    Fit {
+        cost: stage.cost(&fitted.built, &segments),
+        count,
+        noise,
+        freedom: fitted.set.slots().len() + segments.len() * fitted.freedoms.len(),
+        set: fitted.set.clone(),
+        built: fitted.built.clone(),
+        segments,
+        covariance: fitted.covariance.clone(),
+        converged: fitted.converged,
+        iterations: 0,
+        doubt: stage.doubt,
+    }
+}
+
+/// What was tried, for the report.
+pub(crate) fn attempts(course: &Course) -> Vec<Attempt> {
+    let all = course.found.left.max(1.0);
+    let mut attempts: Vec<Attempt> = Vec::new();
+    for (h, score) in &course.found.shown {
+        if !attempts.iter().any(|a| a.name == h.name && a.place == h.place) {
+            attempts.push(Attempt {
+                round: 0,
+                name: h.name.to_owned(),
+                place: h.place.clone(),
+                score: score.score,
+                share: (score.score / all).clamp(0.0, 1.0),
+                fall: None,
+                parameters: score.rank,
+                gain: None,
+                together: None,
+                kept: false,
+                found: score.start.clone(),
+                shown: score.shown.clone(),
+            });
+        }
+    }
+    let best = &course.found.best.set;
+    for tried in &course.found.tried {
+        let [fall, gain] = [tried.scores, tried.criteria].map(|s| s[0] - s[1]);
+        for (h, x) in tried.set.findings().filter(|(h, _)| tried.added.contains(&h.title())) {
+            let is_kept = best.findings().any(|(b, _)| b.title() == h.title());
+            let is_whole = tried.added.iter().all(|t| best.findings().any(|(b, _)| b.title() == *t));
+            let at = attempts.iter().position(|a| a.round == tried.round && a.title() == h.title());
+            let known = at.map(|i| attempts.remove(i));
+            if known.as_ref().and_then(|k| k.gain).is_some_and(|g| g >= gain) {
+                attempts.extend(known);
+                continue;
+            }
+            let shown = known.map_or_else(|| crate::screen::Shown { errors: Vec::new(), condition: 1.0 }, |k| k.shown);
+            attempts.push(Attempt {
+                round: tried.round,
+                name: h.name.to_owned(),
+                place: h.place.clone(),
+                score: tried.promised,
+                share: (fall / all).clamp(0.0, 1.0),
+                fall: Some(fall),
+                parameters: h.coordinates.len() - h.held.len(),
+                gain: Some(gain),
+                together: (tried.added.len() > 1 && is_kept && is_whole).then_some(gain),
+                kept: is_kept && is_whole,
+                found: x.clone(),
+                shown,
+            });
+        }
+    }
+    attempts
+}

@@ -1,0 +1,271 @@
+//! A run as a chain of linear intervals: states and unknown forces eliminated, numbers left.
+//!
+//! Interval i, about the states that are believed at present, with θ the numbers and y = (θ, 1):
+//!
+//!   ρᵢ = Sᵢ δsᵢ + Fᵢ fᵢ + Yᵢ y,        Yᵢ = (∂r/∂θ, r)           residuals, units of noise
+//!   δsᵢ₊₁ = Aᵢ δsᵢ + Bᵢ fᵢ + Dᵢ y,      Dᵢ = (∂end/∂θ, defect)    continuity
+//!   fᵢ ~ N(0, diag q²),   δs₀ ~ N(0, L₀ L₀ᵀ)
+//!
+//! With δsᵢ = mᵢ y + Lᵢ ξ, fᵢ = q φ and ζ = (ξ, φ) ~ N(0, 1) one interval costs a least-squares problem with a unit prior (square-root covariance
+//! filter: Kaminski, Bryson and Schmidt 1971; sensitivities carried along: Gupta and Mehra 1974):
+//!
+//!   H = (S L, F q),  V = Y + S m,  N = 1 + HᵀH = C Cᵀ,   K += VᵀV − (HᵀV)ᵀ N⁻¹ HᵀV,   log|R| += log|N|
+//!   m⁺ = A m + D − T N⁻¹ HᵀV,   L⁺ L⁺ᵀ = T N⁻¹ Tᵀ,   T = (A L, B q)
+//!
+//! yᵀ K y is then the least that states and forces leave of the cost: −2 log of the marginal likelihood but for log|R|. N is never less than one, so
+//! that neither exact continuity (q = 0) nor a state that nothing shows needs a special case. Backwards the adjoint g = ∂cost/∂s gives the smoothed states,
+//!
+//!   ζ̂ = −N⁻¹ (HᵀV y + Tᵀ g⁺),   g = Sᵀ ρ + Aᵀ g⁺,
+//!
+//! and the information Λ of what comes later the covariance of ζ (two-filter form: Fraser and Potter 1969). All of this asks for products of the columns
+//! (S, F, Y) alone, channel by channel, so that the samples are read once and the noise of a channel can still be another.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// One interval: products of its columns, and how it goes on.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Channels and products of (S, F, Y) over their residuals.
+    pub grams: Vec<(u16, DMatrix<f64>)>,
+    /// ∂end/∂s.
+    pub a: DMatrix<f64>,
+    /// ∂end/∂f.
+    pub b: DMatrix<f64>,
+    /// ∂end/∂θ, and last what the end exceeds the next interval's state by.
+    pub d: DMatrix<f64>,
+}
+
+/// What may vary beside the numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Prior<'a> {
+    /// Standard deviation of the first state, by coordinate.
+    pub start: &'a DVector<f64>,
+    /// Standard deviation of the unknown force of an interval, by coordinate.
+    pub force: &'a DVector<f64>,
+    /// Factor of the noise, by channel.
+    pub noise: &'a DVector<f64>,
+}
+
+/// A run with its states and forces eliminated.
+#[derive(Clone, Debug)]
+pub struct Marginal {
+    /// K: products of the numbers' columns and the residual.
+    pub gram: DMatrix<f64>,
+    /// log|R|, the price of what forces and states may be.
+    pub log_det: f64,
+}
+
+/// States and forces of a run when the numbers are given.
+#[derive(Clone, Debug, Default)]
+pub struct Smoothed {
+    /// Change of each state.
+    pub states: Vec<DVector<f64>>,
+    /// Force of each interval.
+    pub forces: Vec<DVector<f64>>,
+    /// Variance of each force.
+    pub variances: Vec<DVector<f64>>,
+    /// Channels and expected squares of their residuals, units of the noise as it was given; by interval.
+    pub squares: Vec<Vec<(u16, f64)>>,
+}
+
+/// One interval as the filter has seen it.
+struct Seen {
+    /// Products over all channels.
+    gram: DMatrix<f64>,
+    n: Cholesky<f64, Dyn>,
+    taken: DMatrix<f64>,
+    t: DMatrix<f64>,
+    l: DMatrix<f64>,
+    m: DMatrix<f64>,
+}
+
+/// Runs the filter and hands every interval to `look`.
+fn filter(nodes: &[Node], prior: Prior<'_>, mut look: impl FnMut(Seen)) -> Marginal {
+    let width = nodes.first().map_or(1, |n| n.d.ncols());
+    let n_x = prior.start.len();
+    let n_u = n_x + prior.force.len();
+    let mut l = DMatrix::from_diagonal(prior.start);
+    let mut m = DMatrix::zeros(n_x, width);
+    let mut total = DMatrix::zeros(width, width);
+    let mut log_det = 0.0;
+    for node in nodes {
+        let gram = node.weighted(prior.noise);
+        let (zz, zy) = (gram.view((0, 0), (n_u, n_u)), gram.view((0, n_u), (n_u, width)));
+        let (zs, sy) = (zz.columns(0, n_x), zy.rows(0, n_x));
+        let n = with_unit(rooted(&rooted(&zz.into_owned(), &l, prior.force).transpose(), &l, prior.force));
+        let hv = rooted(&(zy + zs * &m), &l, prior.force);
+        let taken = n.solve(&hv);
+        let crossed = sy.tr_mul(&m);
+        let vv =
+            gram.view((n_u, n_u), (width, width)) + &crossed + crossed.transpose() + m.tr_mul(&(zs.rows(0, n_x) * &m));
+        total += vv - hv.tr_mul(&taken);
+        log_det += 2.0 * n.l_dirty().diagonal().iter().map(|c| c.ln()).sum::<f64>();
+        let t = beside(&(&node.a * &l), &scaled(&node.b, prior.force));
+        let next_m = &node.a * &m + &node.d - &t * &taken;
+        let next_l = root(&n, &t);
+        look(Seen { gram, n, taken, t, l, m });
+        (l, m) = (next_l, next_m);
+    }
+    Marginal { gram: total, log_det }
+}
+
+impl Node {
+    /// Products over all channels, each over the factor of its noise.
+    fn weighted(&self, noise: &DVector<f64>) -> DMatrix<f64> {
+        let side = self.b.ncols() + self.a.ncols() + self.d.ncols();
+        let mut sum = DMatrix::zeros(side, side);
+        for (channel, gram) in &self.grams {
+            let weight = noise[*channel as usize].powi(-2);
+            sum.zip_apply(gram, |s, g| *s += weight * g);
+        }
+        sum
+    }
+}
+
+/// Eliminates states and forces of a run.
+pub fn eliminate(nodes: &[Node], prior: Prior<'_>) -> Marginal {
+    filter(nodes, prior, |_| ())
+}
+
+/// States and forces of a run at `theta`.
+pub fn smooth(nodes: &[Node], prior: Prior<'_>, theta: &DVector<f64>) -> Smoothed {
+    let mut seen = Vec::with_capacity(nodes.len());
+    filter(nodes, prior, |s| seen.push(s));
+    let y = theta.push(1.0);
+    let (n_x, n_f) = (prior.start.len(), prior.force.len());
+    let n_u = n_x + n_f;
+    let mut gradient = DVector::zeros(n_x);
+    let mut later = DMatrix::zeros(n_x, n_x);
+    let mut out = Smoothed::default();
+    for (node, seen) in nodes.iter().zip(&seen).rev() {
+        let zeta = -(&seen.taken * &y) - seen.n.solve(&seen.t.tr_mul(&gradient));
+        let (xi, phi) = (zeta.rows(0, n_x), zeta.rows(n_x, n_f));
+        let state = &seen.m * &y + &seen.l * xi;
+        let force = phi.component_mul(prior.force);
+        let all = DVector::from_iterator(n_u + y.len(), state.iter().chain(&force).chain(&y).copied());
+        gradient = seen.gram.rows(0, n_x) * &all + node.a.tr_mul(&gradient);
+        let known = with_unit(seen.information(prior.force) + seen.t.tr_mul(&(&later * &seen.t)));
+        let covariance = known.inverse();
+        let spread = covariance.diagonal().rows(n_x, n_f).into_owned();
+        let doubt = spread_of(&covariance, &seen.l, prior.force);
+        let square = |(channel, gram): &(u16, DMatrix<f64>)| {
+            let own = gram.view((0, 0), (n_u, n_u)).component_mul(&doubt).sum();
+            (*channel, all.dot(&(gram * &all)) + own)
+        };
+        out.squares.push(node.grams.iter().map(square).collect());
+        out.variances.push(spread.component_mul(prior.force).component_mul(prior.force));
+        out.states.push(state);
+        out.forces.push(force);
+        later = told_by(node, &seen.gram, prior, &later);
+    }
+    out.states.reverse();
+    out.forces.reverse();
+    out.variances.reverse();
+    out.squares.reverse();
+    out
+}
+
+impl Seen {
+    /// HᵀH.
+    fn information(&self, force: &DVector<f64>) -> DMatrix<f64> {
+        let n_u = self.t.ncols();
+        let zz = self.gram.view((0, 0), (n_u, n_u)).into_owned();
+        rooted(&rooted(&zz, &self.l, force).transpose(), &self.l, force)
+    }
+}
+
+/// Covariance of (δs, f) from that of ζ.
+fn spread_of(covariance: &DMatrix<f64>, l: &DMatrix<f64>, force: &DVector<f64>) -> DMatrix<f64> {
+    let n_x = l.nrows();
+    let mut half = covariance.clone();
+    half.rows_mut(0, n_x).copy_from(&(l * covariance.rows(0, n_x)));
+    force.iter().enumerate().for_each(|(j, q)| half.row_mut(n_x + j).scale_mut(*q));
+    let mut out = half.clone();
+    out.columns_mut(0, n_x).copy_from(&(half.columns(0, n_x) * l.transpose()));
+    force.iter().enumerate().for_each(|(j, q)| out.column_mut(n_x + j).scale_mut(*q));
+    out
+}
+
+/// Information about the state at the begin of an interval by what it and all later ones measure, its force eliminated.
+fn told_by(node: &Node, gram: &DMatrix<f64>, prior: Prior<'_>, later: &DMatrix<f64>) -> DMatrix<f64> {
+    let (n_x, n_f) = (prior.start.len(), prior.force.len());
+    let b = scaled(&node.b, prior.force);
+    let (la, lb) = (later * &node.a, later * &b);
+    let ss = gram.view((0, 0), (n_x, n_x)) + node.a.tr_mul(&la);
+    let sf = scaled(&gram.view((0, n_x), (n_x, n_f)).into_owned(), prior.force) + node.a.tr_mul(&lb);
+    let own = scaled(&gram.view((n_x, n_x), (n_f, n_f)).into_owned(), prior.force).transpose();
+    let ff = with_unit(scaled(&own, prior.force) + b.tr_mul(&lb));
+    let information = ss - &sf * ff.solve(&sf.transpose());
+    0.5 * (&information + information.transpose())
+}
+
+/// One step of the filter about a state that is believed as it is: what an interval says of its own state and of the next one's.
+#[derive(Clone, Debug)]
+pub struct Update {
+    /// Change of the interval's state.
+    pub state: DVector<f64>,
+    /// Change of its end.
+    pub end: DVector<f64>,
+    /// Root of the covariance of the end.
+    pub root: DMatrix<f64>,
+}
+
+/// The update by one interval without numbers, from a root of the covariance of its state.
+pub fn update(node: &Node, l: &DMatrix<f64>, prior: Prior<'_>) -> Update {
+    let n_u = node.a.ncols() + node.b.ncols();
+    let gram = node.weighted(prior.noise);
+    let zz = gram.view((0, 0), (n_u, n_u)).into_owned();
+    let n = with_unit(rooted(&rooted(&zz, l, prior.force).transpose(), l, prior.force));
+    let hv = rooted(&gram.view((0, n_u), (n_u, 1)).into_owned(), l, prior.force);
+    let zeta = -n.solve(&hv).column(0);
+    let t = beside(&(&node.a * l), &scaled(&node.b, prior.force));
+    Update { state: l * zeta.rows(0, l.ncols()), end: &t * &zeta, root: root(&n, &t) }
+}
+
+/// 1 + X, factored; X is not negative but for round-off, which is scaled away where it counts.
+fn with_unit(x: DMatrix<f64>) -> Cholesky<f64, Dyn> {
+    let mut x = 0.5 * (&x + x.transpose());
+    let floor = ROUND_OFF * x.diagonal().amax();
+    (0..x.nrows()).for_each(|i| x[(i, i)] += 1.0);
+    if let Some(c) = Cholesky::new(x.clone()) {
+        return c;
+    }
+    (0..x.nrows()).for_each(|i| x[(i, i)] += floor);
+    let diagonal = x.diagonal().map(|d| if d.is_finite() { d.abs().max(1.0) } else { 1.0 });
+    Cholesky::new(x).unwrap_or_else(|| Cholesky::pack_dirty(DMatrix::from_diagonal(&diagonal.map(f64::sqrt))))
+}
+
+/// Share of the largest of some products that round-off leaves of the smallest.
+const ROUND_OFF: f64 = 1e-12;
+
+/// A root of T N⁻¹ Tᵀ with as many columns as rows.
+fn root(n: &Cholesky<f64, Dyn>, t: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut half = t.transpose();
+    n.l_dirty().solve_lower_triangular_mut(&mut half);
+    if half.nrows() < half.ncols() {
+        return half.transpose().resize_horizontally(t.nrows(), 0.0);
+    }
+    half.qr().r().transpose()
+}
+
+/// diag(Lᵀ, q) X.
+fn rooted(x: &DMatrix<f64>, l: &DMatrix<f64>, force: &DVector<f64>) -> DMatrix<f64> {
+    let n_x = l.nrows();
+    let mut out = x.clone();
+    out.rows_mut(0, n_x).copy_from(&l.tr_mul(&x.rows(0, n_x)));
+    force.iter().enumerate().for_each(|(j, q)| out.row_mut(n_x + j).scale_mut(*q));
+    out
+}
+
+fn beside(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut both = DMatrix::zeros(a.nrows(), a.ncols() + b.ncols());
+    both.columns_mut(0, a.ncols()).copy_from(a);
+    both.columns_mut(a.ncols(), b.ncols()).copy_from(b);
+    both
+}
+
+fn scaled(a: &DMatrix<f64>, by: &DVector<f64>) -> DMatrix<f64> {
+    let mut out = a.clone();
+    out.column_iter_mut().zip(by.iter()).for_each(|(mut column, s)| column *= *s);
+    out
+}

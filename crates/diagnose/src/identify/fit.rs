@@ -1,0 +1,363 @@
+//! A set of effects fitted to whole runs: Gauss–Newton on numbers and states together, forces and noise as large as the data make them.
+//!
+//! One iteration: every interval about its state, the numbers' columns, numbers and spread by [`super::marginal`], states by the smoother. States follow the
+//! samples whatever the model does, so that no run is ever lost, and the columns are those of the motion that was measured; what remains nonlinear is the
+//! numbers themselves. A step is taken if it lowers the marginal likelihood's −2 log as made linear there, and halved where it does not.
+
+use super::chain::Prior;
+use super::forces::{Force, first_spread, forces, vary_forces};
+use super::marginal::{Chain, Estimate, Linear, Spread, estimate};
+use super::track::{Bases, Column, Frame, Link, Track, coordinates};
+use crate::error::DiagnoseError;
+use crate::facts::Facts;
+use crate::fit::{EffectSet, first_sizes, vary};
+use crate::hypothesis::Scale;
+use crate::linear::{Stage, Variation};
+use crate::plant::{Built, Plant};
+use crate::start::Freedom;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// What is fitted to what.
+#[derive(Clone, Debug)]
+pub struct Problem<'a> {
+    /// Runs, steps and counts.
+    pub stage: Stage<'a>,
+    /// The scenario.
+    pub plant: &'a Plant,
+    /// Runs that are fitted.
+    pub runs: Vec<usize>,
+    /// Intervals of each run.
+    pub knots: usize,
+    /// Unknown forces.
+    pub forces: Vec<Force>,
+    /// Names of the channels, in the order of their numbers.
+    pub channels: Vec<String>,
+}
+
+/// A set of effects with all that goes with it.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// The set.
+    pub set: EffectSet,
+    /// Its model.
+    pub built: Built,
+    /// Coordinates of a state.
+    pub freedoms: Vec<Freedom>,
+    /// Models with a force each.
+    pub forces: Vec<Variation>,
+    /// Runs with their states.
+    pub tracks: Vec<Track>,
+    /// Derivatives by states and forces, as last taken.
+    pub links: Vec<Arc<Vec<Link>>>,
+    /// Prior standard deviations of a first state.
+    pub first: DVector<f64>,
+    /// Spread of forces and noise.
+    pub spread: Spread,
+    /// −2 log of the marginal likelihood and of the numbers' priors.
+    pub score: f64,
+    /// Part of it that residuals make.
+    pub cost: f64,
+    /// Residuals.
+    pub count: usize,
+    /// Covariance of the fitted numbers.
+    pub covariance: DMatrix<f64>,
+    /// Whether the last step promised next to nothing.
+    pub converged: bool,
+}
+
+/// How far a fit goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Reach {
+    /// Most iterations.
+    pub iterations: usize,
+    /// Whether derivatives by states and forces may be those of an earlier fit.
+    pub reuse: bool,
+}
+
+/// Intervals of a run.
+const KNOTS: usize = 96;
+/// Promised fall of −2 log likelihood below which a fit has converged.
+const CONVERGED: f64 = 0.3;
+/// Most times that a step is halved.
+const HALVINGS: usize = 4;
+/// Steps of the spread: from afar, and near.
+const STEPS: [usize; 2] = [12, 6];
+/// Iterations of states and spread of a model without numbers.
+const SETTLING: usize = 3;
+/// A first state is known no better than so many times what its first interval shows of it.
+const UNKNOWN: f64 = 1e4;
+/// Largest prior standard deviation of a first state's coordinate, its own unit.
+const LARGEST: f64 = 1.0;
+
+impl<'a> Problem<'a> {
+    /// Some runs of a scenario.
+    pub fn new(stage: Stage<'a>, plant: &'a Plant, facts: &Facts, runs: Vec<usize>) -> Self {
+        let mut channels: Vec<String> =
+            stage.tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.channel.clone())).collect();
+        channels.sort();
+        channels.dedup();
+        Self { stage, plant, runs, knots: KNOTS, forces: forces(facts), channels }
+    }
+
+    fn frame<'f>(&'f self, of: &'f Fitted) -> Frame<'f> {
+        Frame { stage: &self.stage, built: &of.built, freedoms: &of.freedoms, forces: &of.forces }
+    }
+
+    /// Variances that are estimated.
+    pub fn variances(&self) -> usize {
+        self.forces.len() + self.channels.len()
+    }
+
+    /// Channel of every residual of every interval, run by run.
+    pub fn channels_of(&self, tracks: &[Track]) -> Vec<Vec<Vec<u16>>> {
+        let of_run = |track: &Track| {
+            let tape = &self.stage.tapes[track.run];
+            let number =
+                |r: usize| self.channels.iter().position(|c| *c == tape.readings[r].channel).unwrap_or(0) as u16;
+            let numbers: Vec<u16> = (0..tape.readings.len()).map(number).collect();
+            let of_interval = |members: &Vec<u32>| {
+                let reading = |m: &u32| tape.events[*m as usize].reading as usize;
+                let of_event = |r: usize| std::iter::repeat_n(numbers[r], tape.readings[r].width());
+                members.iter().map(reading).flat_map(of_event).collect::<Vec<u16>>()
+            };
+            track.intervals.iter().map(|i| of_interval(&i.members)).collect()
+        };
+        tracks.iter().map(of_run).collect()
+    }
+
+    /// The nominal model along all runs.
+    pub fn begin(&self) -> Result<Fitted, DiagnoseError> {
+        let set = EffectSet::default();
+        let built = self.plant.build(&[])?;
+        let mut tracks: Vec<Track> =
+            self.runs.par_iter().map(|r| Track::cut(&self.stage, &built, *r, self.knots)).collect::<Result<_, _>>()?;
+        let freedoms = coordinates(&built, &tracks[0].intervals[0].start);
+        let forces = vary_forces(self.plant, &set, &self.forces)?;
+        let frame = Frame { stage: &self.stage, built: &built, freedoms: &freedoms, forces: &forces };
+        let typical = frame.link(tracks[0].run, &tracks[0].intervals[self.knots / 2]).ok_or_else(|| self.lost())?;
+        let step = |w: &[super::track::Interval]| DVector::from_vec(w[1].start.difference(&w[0].start, &freedoms));
+        let steps: Vec<DVector<f64>> = tracks.iter().flat_map(|t| t.intervals.windows(2).map(step)).collect();
+        let spread = Spread {
+            force: first_spread(&freedoms, &steps, &typical.b),
+            noise: DVector::from_element(self.channels.len().max(1), 1.0),
+        };
+        let first = |k: usize| (UNKNOWN / typical.s.column(k).norm()).min(LARGEST);
+        let first = DVector::from_iterator(freedoms.len(), (0..freedoms.len()).map(first));
+        let prior = Prior { start: &first, force: &spread.force, noise: &spread.noise };
+        let links: Option<Vec<Vec<Link>>> = tracks.par_iter_mut().map(|t| frame.follow(t, prior)).collect();
+        let links = links.ok_or_else(|| self.lost())?.into_iter().map(Arc::new).collect();
+        let none = Fitted {
+            set,
+            built,
+            freedoms,
+            forces,
+            tracks,
+            links,
+            first,
+            spread,
+            score: f64::INFINITY,
+            cost: f64::INFINITY,
+            count: 0,
+            covariance: DMatrix::zeros(0, 0),
+            converged: false,
+        };
+        self.settle(none, SETTLING, true)
+    }
+
+    /// The same fit on other samples of the same runs.
+    pub fn onto(&self, of: &Fitted) -> Result<Fitted, DiagnoseError> {
+        let cut = |track: &Track| -> Result<Track, DiagnoseError> {
+            let mut fresh = Track::cut(&self.stage, &of.built, track.run, self.knots)?;
+            let pairs = fresh.intervals.iter_mut().zip(&track.intervals);
+            pairs.for_each(|(own, known)| own.start.clone_from(&known.start));
+            Ok(fresh)
+        };
+        let tracks = of.tracks.iter().map(cut).collect::<Result<_, _>>()?;
+        Ok(Fitted { tracks, links: Vec::new(), ..of.clone() })
+    }
+
+    /// A set along other runs than those that it was fitted to, its numbers as they are.
+    pub fn along(&self, of: &Fitted, set: &EffectSet) -> Result<Fitted, DiagnoseError> {
+        let nominal = self.begin()?;
+        let mut now = self.with(&nominal, set.frozen(), true)?;
+        now.spread.clone_from(&of.spread);
+        self.settle(now, SETTLING, true)
+    }
+
+    fn lost(&self) -> DiagnoseError {
+        let file = self.runs.first().map_or_else(String::new, |r| self.stage.tapes[*r].file.clone());
+        DiagnoseError::Replay {
+            file,
+            what: "an interval of it cannot be replayed from what its samples say".to_owned(),
+        }
+    }
+
+    /// States and spread of a model as it stands.
+    fn settle(&self, mut now: Fitted, times: usize, reuse: bool) -> Result<Fitted, DiagnoseError> {
+        for time in 0..times {
+            let made = self.linearise(&mut now, &[], reuse || time > 0)?;
+            let steps = if time == 0 { STEPS[0] } else { STEPS[1] };
+            let chains = made.chains(&[]);
+            let found = estimate(&chains, None, &now.spread, steps);
+            let before = now.score;
+            (now.spread, now.score, now.cost, now.count) = (found.spread.clone(), found.score, found.cost, made.count);
+            now.score += now.set.prior_cost();
+            now.tracks = self.moved(&now, &chains, &found);
+            if (before - now.score).abs() < CONVERGED {
+                break;
+            }
+        }
+        Ok(now)
+    }
+
+    /// A set fitted, from where another one stands.
+    pub fn fit(&self, from: &Fitted, set: EffectSet, reach: Reach) -> Result<Fitted, DiagnoseError> {
+        let mut now = self.with(from, set, reach.reuse)?;
+        let slots = now.set.slots();
+        if slots.is_empty() {
+            return self.settle(now, SETTLING, reach.reuse);
+        }
+        let mut sizes = first_sizes(&now.set);
+        let mut before: Option<Fitted> = None;
+        let mut halved = 0;
+        for iteration in 0..reach.iterations {
+            let variations = vary(self.plant, &now.set, &slots, &sizes)?;
+            let made = self.linearise(&mut now, &variations, reach.reuse || iteration > 0)?;
+            let ridge = ridge_of(&now.set, slots.len());
+            let here = estimate(&made.chains(&[]), None, &now.spread, if iteration == 0 { STEPS[0] } else { STEPS[1] });
+            let score = here.score + now.set.prior_cost();
+            if let Some(last) = before.as_ref().filter(|b| score.is_nan() || score > b.score + CONVERGED) {
+                if halved >= HALVINGS {
+                    return Ok(Fitted { converged: false, ..last.clone() });
+                }
+                halved += 1;
+                now = self.between(last, &now)?;
+                continue;
+            }
+            let chains = made.chains(&(0..slots.len()).collect::<Vec<_>>());
+            let found = estimate(&chains, Some(&ridge), &here.spread, STEPS[1]);
+            (now.score, now.cost, now.count) = (score, here.cost, made.count);
+            now.spread = here.spread.clone();
+            now.covariance = found.covariance.clone();
+            sizes = next_sizes(&now.set, &slots, &found.covariance);
+            let promised = score - found.score;
+            now.converged = promised < CONVERGED;
+            if now.converged || iteration + 1 == reach.iterations {
+                break;
+            }
+            halved = 0;
+            before = Some(now.clone());
+            let set = now.set.moved(&slots, found.theta.as_slice());
+            let tracks = self.moved(&now, &chains, &found);
+            now = Fitted { tracks, spread: found.spread, ..self.with(&now, set, true)? };
+        }
+        match before {
+            Some(last) if now.score.is_nan() || now.score > last.score + CONVERGED => Ok(last),
+            _ => Ok(now),
+        }
+    }
+
+    /// Half way between two fits of the same set.
+    fn between(&self, a: &Fitted, b: &Fitted) -> Result<Fitted, DiagnoseError> {
+        let slots = a.set.slots();
+        let by: Vec<f64> =
+            slots.iter().map(|(m, k)| 0.5 * (b.set.members[*m].1[*k] - a.set.members[*m].1[*k])).collect();
+        let set = a.set.moved(&slots, &by);
+        Ok(Fitted { tracks: a.tracks.clone(), spread: a.spread.clone(), ..self.with(b, set, true)? })
+    }
+
+    /// Another set at the states of a fit.
+    fn with(&self, from: &Fitted, set: EffectSet, reuse: bool) -> Result<Fitted, DiagnoseError> {
+        let built = self.plant.build(&set.effects())?;
+        let freedoms = coordinates(&built, &from.tracks[0].intervals[0].start.fitted_to(&built));
+        let is_same = freedoms == from.freedoms;
+        let forces = if is_same && reuse { from.forces.clone() } else { vary_forces(self.plant, &set, &self.forces)? };
+        let first = |f: &Freedom| {
+            let known = from.freedoms.iter().position(|g| g == f);
+            known.map_or(LARGEST, |k| from.first[k])
+        };
+        let first = DVector::from_iterator(freedoms.len(), freedoms.iter().map(first));
+        let mut now = Fitted { set, built, freedoms, forces, first, ..from.clone() };
+        if !is_same {
+            now.links = Vec::new();
+        }
+        now.tracks = {
+            let frame = self.frame(&now);
+            from.tracks.par_iter().map(|t| frame.carried(t, &from.built)).collect()
+        };
+        Ok(now)
+    }
+
+    /// Everything linear about the states of a fit, with a column for each variation.
+    pub fn linearise(&self, now: &mut Fitted, variations: &[Variation], reuse: bool) -> Result<Made, DiagnoseError> {
+        let frame = self.frame(now);
+        let bases: Option<Vec<Bases>> = now.tracks.par_iter().map(|t| frame.bases(t)).collect();
+        let bases = bases.ok_or_else(|| self.lost())?;
+        let links = match reuse && now.links.len() == now.tracks.len() {
+            true => now.links.clone(),
+            false => {
+                let links: Option<Vec<Vec<Link>>> = now.tracks.par_iter().map(|t| frame.links(t)).collect();
+                links.ok_or_else(|| self.lost())?.into_iter().map(Arc::new).collect()
+            }
+        };
+        let columns = |(t, b): (&Track, &Bases)| -> Vec<Vec<Column>> {
+            variations.par_iter().map(|v| frame.columns(t, b, v)).collect()
+        };
+        let columns: Vec<_> = now.tracks.par_iter().zip(&bases).map(columns).collect();
+        let channels = self.channels_of(&now.tracks);
+        let runs = now.tracks.iter().zip(&bases).zip(columns.iter().zip(&links)).zip(channels);
+        let linear = |(((t, b), (c, l)), channels): (((&Track, &Bases), (&Vec<Vec<Column>>, &Arc<Vec<Link>>)), _)| {
+            Linear { links: Arc::clone(l), sides: frame.sides(t, b, c), channels, start: now.first.clone() }
+        };
+        let runs: Vec<Linear> = runs.map(linear).collect();
+        let count = runs.iter().flat_map(|r| r.channels.iter()).map(Vec::len).sum();
+        now.links = links;
+        Ok(Made { runs, count })
+    }
+
+    /// The runs of a fit with their states where the smoother has them.
+    fn moved(&self, now: &Fitted, chains: &[Chain], found: &Estimate) -> Vec<Track> {
+        let frame = self.frame(now);
+        let of = |(track, chain): (&Track, &Chain)| frame.moved(track, &chain.smoothed(&found.spread, &found.theta));
+        now.tracks.par_iter().zip(chains).map(of).collect()
+    }
+}
+
+/// All runs made linear.
+pub struct Made {
+    /// Run by run.
+    pub runs: Vec<Linear>,
+    /// Residuals.
+    pub count: usize,
+}
+
+impl Made {
+    /// Products of the columns of some numbers, run by run.
+    pub fn chains(&self, columns: &[usize]) -> Vec<Chain> {
+        self.runs.iter().map(|r| r.chain(columns)).collect()
+    }
+}
+
+/// Products of the priors of a set's numbers about where these stand.
+pub fn ridge_of(set: &EffectSet, numbers: usize) -> DMatrix<f64> {
+    let mut ridge = DMatrix::zeros(numbers + 1, numbers + 1);
+    set.add_prior(&mut ridge);
+    ridge
+}
+
+/// Steps of the difference quotients: what moves the fit by a fraction of one standard error.
+fn next_sizes(set: &EffectSet, slots: &[(usize, usize)], covariance: &DMatrix<f64>) -> Vec<f64> {
+    let size = |(i, (m, k)): (usize, &(usize, usize))| {
+        let (h, x) = &set.members[*m];
+        let floor = if h.coordinates[*k].scale == Scale::Log { FLOOR } else { FLOOR * x[*k].abs() };
+        covariance[(i, i)].max(0.0).sqrt().min(WIDEST * x[*k].abs().max(1.0)).max(floor).max(f64::MIN_POSITIVE.sqrt())
+    };
+    slots.iter().enumerate().map(size).collect()
+}
+
+/// Smallest step of a difference quotient, relative.
+const FLOOR: f64 = 1e-6;
+/// Largest, relative to the number or to one.
+const WIDEST: f64 = 0.01;

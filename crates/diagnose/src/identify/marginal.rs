@@ -1,0 +1,294 @@
+//! How large unknown forces and noise are, and the numbers beside them: by the marginal likelihood.
+//!
+//! With numbers θ, variances q² of the forces and factors κ of the noise of each channel the likelihood of all runs is that of [`super::chain`], its residuals
+//! over κ. Its −2 log falls with every step of
+//!
+//!   q² ← ⟨f̂² + var f̂⟩,    κ² ← κ² ⟨ρ̂² + var ρ̂⟩           (expectation–maximisation: Shumway and Stoffer 1982),
+//!
+//! here over-relaxed in the logarithm, which keeps the fixed point and comes there several times sooner; a step that does not lower it is made
+//! plain. κ is never below one: what sensors are known to have they have, and what no force of an interval's length follows comes on top.
+
+use super::chain::{Marginal, Node, Prior, Smoothed, eliminate, smooth};
+use super::track::{Link, Side};
+use crate::fit::pseudo_inverse;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// A run made linear, sample by sample.
+#[derive(Clone, Debug)]
+pub struct Linear {
+    /// Derivatives by states and forces.
+    pub links: Arc<Vec<Link>>,
+    /// Columns of numbers and residuals.
+    pub sides: Vec<Side>,
+    /// Channel of every residual, interval by interval.
+    pub channels: Vec<Vec<u16>>,
+    /// Prior standard deviations of the first state.
+    pub start: DVector<f64>,
+}
+
+/// The same by products of its columns.
+#[derive(Clone, Debug)]
+pub struct Chain {
+    nodes: Vec<Node>,
+    start: DVector<f64>,
+    /// Residuals by channel, interval by interval.
+    samples: Vec<Vec<(u16, f64)>>,
+}
+
+/// What varies from interval to interval, and from sample to sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spread {
+    /// Standard deviations of the unknown forces.
+    pub force: DVector<f64>,
+    /// Factor of the noise, by channel.
+    pub noise: DVector<f64>,
+}
+
+/// Numbers and spread at their best.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// Numbers.
+    pub theta: DVector<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+    /// Spread of forces and noise.
+    pub spread: Spread,
+    /// −2 log of the marginal likelihood, but for a constant.
+    pub score: f64,
+    /// Part of it that residuals make: their number where all is right.
+    pub cost: f64,
+}
+
+/// Exponent of a step in log q².
+const RELAXED: f64 = 1.8;
+/// Fall of −2 log likelihood by a step below which the spread is at its best.
+const ENOUGH: f64 = 0.1;
+/// Most that one step changes a variance.
+const LEAP: [f64; 2] = [1e-4, 1e8];
+
+impl Linear {
+    /// Products of the columns of some numbers and of the residual.
+    pub fn chain(&self, columns: &[usize]) -> Chain {
+        let node = |((link, side), channels): ((&Link, &Side), &Vec<u16>)| {
+            let kept: Vec<usize> = columns.iter().copied().chain([side.y.ncols() - 1]).collect();
+            let of_channel = |channel: u16| {
+                let rows: Vec<usize> = (0..channels.len()).filter(|i| channels[*i] == channel).collect();
+                let (n_x, n_f) = (link.s.ncols(), link.f.ncols());
+                let mut all = DMatrix::zeros(rows.len(), n_x + n_f + kept.len());
+                for (i, row) in rows.iter().enumerate() {
+                    (0..n_x).for_each(|k| all[(i, k)] = link.s[(*row, k)]);
+                    (0..n_f).for_each(|k| all[(i, n_x + k)] = link.f[(*row, k)]);
+                    kept.iter().enumerate().for_each(|(k, c)| all[(i, n_x + n_f + k)] = side.y[(*row, *c)]);
+                }
+                (channel, all.tr_mul(&all))
+            };
+            let mut own: Vec<u16> = channels.clone();
+            own.sort_unstable();
+            own.dedup();
+            Node {
+                grams: own.into_iter().map(of_channel).collect(),
+                a: link.a.clone(),
+                b: link.b.clone(),
+                d: side.d.select_columns(&kept),
+            }
+        };
+        let nodes: Vec<Node> = self.links.par_iter().zip(&self.sides).zip(&self.channels).map(node).collect();
+        let count = |(node, channels): (&Node, &Vec<u16>)| {
+            let of = |c: u16| (c, channels.iter().filter(|own| **own == c).count() as f64);
+            node.grams.iter().map(|g| of(g.0)).collect()
+        };
+        let samples = nodes.iter().zip(&self.channels).map(count).collect();
+        Chain { nodes, start: self.start.clone(), samples }
+    }
+
+    /// Products of very many columns at one spread.
+    pub fn summed(&self, columns: &[usize], spread: &Spread) -> Chain {
+        let mut chain = Linear { channels: Vec::new(), ..self.clone_links() }.empty();
+        let node = |((link, side), channels): ((&Link, &Side), &Vec<u16>)| {
+            let kept: Vec<usize> = columns.iter().copied().chain([side.y.ncols() - 1]).collect();
+            let (n_x, n_f) = (link.s.ncols(), link.f.ncols());
+            let mut all = DMatrix::zeros(channels.len(), n_x + n_f + kept.len());
+            all.columns_mut(0, n_x).copy_from(&link.s);
+            all.columns_mut(n_x, n_f).copy_from(&link.f);
+            kept.iter().enumerate().for_each(|(k, c)| all.column_mut(n_x + n_f + k).copy_from(&side.y.column(*c)));
+            for (i, channel) in channels.iter().enumerate() {
+                let factor = spread.noise[*channel as usize];
+                if factor != 1.0 {
+                    all.row_mut(i).unscale_mut(factor);
+                }
+            }
+            let gram = all.tr_mul(&all);
+            Node { grams: vec![(0, gram)], a: link.a.clone(), b: link.b.clone(), d: side.d.select_columns(&kept) }
+        };
+        chain.nodes = self.links.par_iter().zip(&self.sides).zip(&self.channels).map(node).collect();
+        chain
+    }
+
+    fn clone_links(&self) -> Self {
+        Self { links: Arc::clone(&self.links), sides: Vec::new(), channels: Vec::new(), start: self.start.clone() }
+    }
+
+    fn empty(self) -> Chain {
+        Chain { nodes: Vec::new(), start: self.start, samples: Vec::new() }
+    }
+}
+
+impl Chain {
+    fn prior<'a>(&'a self, spread: &'a Spread) -> Prior<'a> {
+        Prior { start: &self.start, force: &spread.force, noise: &spread.noise }
+    }
+
+    /// States and forces at some numbers.
+    pub fn smoothed(&self, spread: &Spread, theta: &DVector<f64>) -> Smoothed {
+        smooth(&self.nodes, self.prior(spread), theta)
+    }
+
+    /// Products of the numbers' columns, states and forces eliminated.
+    fn products(&self, spread: &Spread) -> Marginal {
+        let found = eliminate(&self.nodes, self.prior(spread));
+        let log_noise: f64 = self.samples.iter().flatten().map(|(c, n)| 2.0 * n * spread.noise[*c as usize].ln()).sum();
+        Marginal { log_det: found.log_det + log_noise, ..found }
+    }
+}
+
+/// Products of the numbers' columns over all runs, states and forces eliminated; each run alone.
+pub fn products(runs: &[Chain], spread: &Spread) -> Vec<Marginal> {
+    runs.par_iter().map(|run| run.products(spread)).collect()
+}
+
+/// Products of very many columns over all runs, at one spread.
+pub fn wide_products(runs: &[Linear], columns: &[usize], spread: &Spread) -> Marginal {
+    let plain = Spread { noise: DVector::from_element(spread.noise.len(), 1.0), ..spread.clone() };
+    let of = |run: &Linear| {
+        let found = run.summed(columns, spread).products(&plain);
+        let log_noise: f64 = run.channels.iter().flatten().map(|c| 2.0 * spread.noise[*c as usize].ln()).sum();
+        Marginal { log_det: found.log_det + log_noise, ..found }
+    };
+    sum(&runs.par_iter().map(of).collect::<Vec<_>>())
+}
+
+/// The sum over runs.
+pub fn sum(parts: &[Marginal]) -> Marginal {
+    let width = parts.first().map_or(1, |p| p.gram.ncols());
+    let zero = Marginal { gram: DMatrix::zeros(width, width), log_det: 0.0 };
+    parts.iter().fold(zero, |sum, p| Marginal { gram: sum.gram + &p.gram, log_det: sum.log_det + p.log_det })
+}
+
+/// The numbers that are best at a given spread. `ridge`: products of the numbers' priors, of the same shape as K.
+pub fn solve(k: &Marginal, ridge: Option<&DMatrix<f64>>, spread: &Spread) -> Estimate {
+    let gram = ridge.map_or_else(|| k.gram.clone(), |r| &k.gram + r);
+    let n = gram.ncols() - 1;
+    let covariance = pseudo_inverse(&gram.view((0, 0), (n, n)).into_owned());
+    let b = gram.view((0, n), (n, 1)).column(0).into_owned();
+    let theta = -(&covariance * &b);
+    let cost = gram[(n, n)] + b.dot(&theta);
+    Estimate { theta, covariance, spread: spread.clone(), score: cost + k.log_det, cost }
+}
+
+/// Numbers and spread together, from a given spread, in so many steps at most.
+pub fn estimate(runs: &[Chain], ridge: Option<&DMatrix<f64>>, spread: &Spread, steps: usize) -> Estimate {
+    let at = |spread: &Spread| solve(&sum(&products(runs, spread)), ridge, spread);
+    let mut now = at(spread);
+    let mut may_be_idle = true;
+    for _ in 0..steps {
+        let growth = growth(runs, &now);
+        if may_be_idle {
+            // Towards zero each step is shorter than the last: what there is none of is left out at once.
+            now = without_idle(now, &growth, &at);
+        }
+        let mut next = at(&now.spread.grown(&growth, RELAXED));
+        if next.score.is_nan() || next.score > now.score {
+            next = at(&now.spread.grown(&growth, 1.0));
+        }
+        let fall = now.score - next.score;
+        if fall.is_nan() || fall <= 0.0 {
+            break;
+        }
+        now = next;
+        if fall < ENOUGH {
+            break;
+        }
+        may_be_idle = growth.force.iter().any(|g| *g < SHRINKING);
+    }
+    now
+}
+
+/// The same without forces that shrink and are not needed, all at once or one by one.
+fn without_idle(now: Estimate, growth: &Spread, at: &dyn Fn(&Spread) -> Estimate) -> Estimate {
+    let shrinks = |j: &usize| growth.force[*j] < SHRINKING && now.spread.force[*j] > f64::MIN_POSITIVE.sqrt();
+    let idle: Vec<usize> = (0..growth.force.len()).filter(shrinks).collect();
+    let without = |now: &Estimate, forces: &[usize]| {
+        let mut spread = now.spread.clone();
+        forces.iter().for_each(|j| spread.force[*j] *= NONE);
+        Some(at(&spread)).filter(|next| next.score < now.score)
+    };
+    if let Some(next) = (!idle.is_empty()).then(|| without(&now, &idle)).flatten() {
+        return next;
+    }
+    idle.iter().filter(|_| idle.len() > 1).fold(now, |now, j| without(&now, &[*j]).unwrap_or(now))
+}
+
+/// Growth below which a force may be none, and the factor of one that is tried for none.
+const SHRINKING: f64 = 0.7;
+const NONE: f64 = 1e-3;
+
+impl Spread {
+    fn grown(&self, by: &Self, power: f64) -> Self {
+        let grow = |x: f64, g: f64| x * g.powf(0.5 * power);
+        Self {
+            force: self.force.zip_map(&by.force, grow),
+            noise: self.noise.zip_map(&by.noise, |x, g| grow(x, g).max(1.0)),
+        }
+    }
+}
+
+/// Growth of all variances in one step.
+fn growth(runs: &[Chain], now: &Estimate) -> Spread {
+    let (n_f, n_c) = (now.spread.force.len(), now.spread.noise.len());
+    let of = |run: &Chain| {
+        let s = run.smoothed(&now.spread, &now.theta);
+        let mut sums = Squares::new(n_f, n_c);
+        sums.intervals = s.forces.len() as f64;
+        for (f, v) in s.forces.iter().zip(&s.variances) {
+            sums.force += f.component_mul(f) + v;
+        }
+        for (square, samples) in s.squares.iter().flatten().zip(run.samples.iter().flatten()) {
+            let channel = square.0 as usize;
+            sums.noise[channel] += square.1 / now.spread.noise[channel].powi(2);
+            sums.samples[channel] += samples.1;
+        }
+        sums
+    };
+    let parts: Vec<Squares> = runs.par_iter().map(of).collect();
+    let all = parts.iter().fold(Squares::new(n_f, n_c), Squares::plus);
+    let ratio = |x: f64| if x.is_finite() { x.clamp(LEAP[0], LEAP[1]) } else { 1.0 };
+    let of_force = |s: f64, q: f64| if q > 0.0 { ratio(s / (all.intervals * q * q)) } else { 1.0 };
+    let of_noise = |s: f64, n: f64| if n > 0.0 { ratio(s / n) } else { 1.0 };
+    Spread { force: all.force.zip_map(&now.spread.force, of_force), noise: all.noise.zip_map(&all.samples, of_noise) }
+}
+
+/// Sums of squares, by force and by channel.
+struct Squares {
+    force: DVector<f64>,
+    intervals: f64,
+    noise: DVector<f64>,
+    samples: DVector<f64>,
+}
+
+impl Squares {
+    fn new(forces: usize, channels: usize) -> Self {
+        let zeros = DVector::zeros;
+        Self { force: zeros(forces), intervals: 0.0, noise: zeros(channels), samples: zeros(channels) }
+    }
+
+    fn plus(self, other: &Self) -> Self {
+        Self {
+            force: self.force + &other.force,
+            intervals: self.intervals + other.intervals,
+            noise: self.noise + &other.noise,
+            samples: self.samples + &other.samples,
+        }
+    }
+}

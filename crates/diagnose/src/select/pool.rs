@@ -1,0 +1,86 @@
+//! All hypotheses as columns beside one linear model of the runs.
+
+use crate::error::DiagnoseError;
+use crate::fit::EffectSet;
+use crate::hypothesis::{Hypothesis, Tier};
+use crate::linear::Variation;
+use crate::plant::Plant;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// A screen point of a hypothesis.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Which hypothesis.
+    pub hypothesis: usize,
+    /// Which of its points.
+    pub point: usize,
+    /// Its columns among those of all entries.
+    pub columns: Range<usize>,
+}
+
+/// Hypotheses with the models that their columns are taken from.
+#[derive(Clone, Debug)]
+pub struct Pool {
+    /// The hypotheses.
+    pub hypotheses: Vec<Hypothesis>,
+    /// Their screen points.
+    pub entries: Vec<Entry>,
+    /// A model for each column.
+    pub variations: Vec<Variation>,
+}
+
+impl Pool {
+    /// The columns of some hypotheses beside a set; points that cannot be built are left out.
+    pub fn new(plant: &Plant, set: &EffectSet, hypotheses: Vec<Hypothesis>) -> Result<Self, DiagnoseError> {
+        let points: Vec<(usize, usize)> =
+            hypotheses.iter().enumerate().flat_map(|(h, hyp)| (0..hyp.screens.len()).map(move |p| (h, p))).collect();
+        let built = |(h, p): &(usize, usize)| {
+            let hypothesis = &hypotheses[*h];
+            let column = |c: &crate::hypothesis::Column| {
+                let x: Vec<f64> = c.base.iter().zip(&c.direction).map(|(b, d)| b + c.step * d).collect();
+                let set = set.with(hypothesis, &hypothesis.clamped(&x));
+                let built = plant.build(&set.effects()).ok()?;
+                Some(Variation { built, step: c.step, is_tolerated: false })
+            };
+            hypothesis.screens[*p].columns.iter().map(column).collect::<Option<Vec<_>>>()
+        };
+        let built: Vec<Option<Vec<Variation>>> = points.par_iter().map(built).collect();
+        let (mut entries, mut variations) = (Vec::new(), Vec::new());
+        for ((hypothesis, point), of_point) in points.into_iter().zip(built) {
+            let Some(of_point) = of_point.filter(|v| !v.is_empty()) else { continue };
+            let columns = variations.len()..variations.len() + of_point.len();
+            entries.push(Entry { hypothesis, point, columns });
+            variations.extend(of_point);
+        }
+        Ok(Self { hypotheses, entries, variations })
+    }
+
+    /// The hypothesis of an entry.
+    pub fn of(&self, entry: usize) -> &Hypothesis {
+        &self.hypotheses[self.entries[entry].hypothesis]
+    }
+
+    /// What an entry's numbers are at some amplitudes of its columns; none where no such effect is possible.
+    pub fn start(&self, entry: usize, amplitudes: &[f64]) -> Option<Vec<f64>> {
+        let Entry { hypothesis, point, .. } = &self.entries[entry];
+        let hypothesis = &self.hypotheses[*hypothesis];
+        hypothesis.start_from(&hypothesis.screens[*point], amplitudes)
+    }
+}
+
+/// Price of an effect in −2 log likelihood: its numbers by the size of the sample, and how unlikely it was beforehand among `many`.
+pub fn price(hypothesis: &Hypothesis, count: usize, many: usize) -> f64 {
+    if hypothesis.is_tolerated() {
+        return 0.0;
+    }
+    let numbers = hypothesis.coordinates.len() - hypothesis.held.len();
+    let unlikely = match hypothesis.tier {
+        Tier::Nominal => 0.0,
+        Tier::Exotic => EXOTIC,
+    };
+    numbers as f64 * (count.max(2) as f64).ln() + 2.0 * (many.max(1) as f64).ln() + unlikely
+}
+
+/// That physics is missing is held less likely beforehand than that a nominal number is off: odds of ten to one.
+const EXOTIC: f64 = 4.6;

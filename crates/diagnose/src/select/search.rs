@@ -1,0 +1,250 @@
+//! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
+
+use super::pool::{Pool, price};
+use super::sets::{Ground, Grown, LinearSet};
+use crate::error::DiagnoseError;
+use crate::facts::Facts;
+use crate::fit::{EffectSet, first_sizes, vary};
+use crate::hypothesis::Hypothesis;
+use crate::identify::fit::{Fitted, Problem, Reach, ridge_of};
+use crate::identify::marginal::{Spread, estimate, products, sum};
+use crate::screen::Score;
+use crate::standing::told;
+
+/// What a search has found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The nominal model along the runs, nominal numbers free within their tolerances.
+    pub nominal: Fitted,
+    /// The best set.
+    pub best: Fitted,
+    /// All that was fitted in full simulation, in order.
+    pub tried: Vec<Tried>,
+    /// What the first linear model said of every hypothesis.
+    pub shown: Vec<(Hypothesis, Score)>,
+    /// What the nominal model leaves beyond noise, −2 log likelihood.
+    pub left: f64,
+}
+
+/// A set that was fitted in full simulation.
+#[derive(Clone, Debug)]
+pub struct Tried {
+    /// Round, from 0.
+    pub round: usize,
+    /// The set.
+    pub set: EffectSet,
+    /// Titles of what it adds.
+    pub added: Vec<String>,
+    /// −2 log likelihood before and after, and criterion.
+    pub scores: [f64; 2],
+    /// Criterion before and after.
+    pub criteria: [f64; 2],
+    /// What the linear model had promised.
+    pub promised: f64,
+}
+
+/// Effects at most, and how many the linear model may add at once.
+const MOST: usize = 6;
+const AT_ONCE: usize = 3;
+/// Sets that are fitted in full simulation in a round.
+const FITTED: usize = 4;
+/// Share of the best promise below which a set is not fitted.
+const PROMISING: f64 = 0.6;
+/// Iterations of a first fit, and to the end.
+const LOOK: Reach = Reach { iterations: 6, reuse: true };
+const END: Reach = Reach { iterations: 6, reuse: false };
+/// Rise of the likelihood without a joint's unknown force, as a share of the largest, below which nothing is missing there.
+const DULL: f64 = 0.003;
+
+/// Criterion of a fit.
+pub fn criterion(fit: &Fitted, many: usize) -> f64 {
+    fit.score + fit.set.members.iter().map(|(h, _)| price(h, fit.count, many)).sum::<f64>()
+}
+
+/// Searches for what a nominal model leaves out; `hypotheses` of a model.
+pub fn search(
+    problem: &Problem<'_>,
+    nominal: Fitted,
+    hypotheses: &dyn Fn(&Fitted) -> Vec<Hypothesis>,
+) -> Result<Found, DiagnoseError> {
+    let watch = problem.stage.work.watch;
+    let mut now = nominal.clone();
+    let mut found = Found { nominal, best: now.clone(), tried: Vec::new(), shown: Vec::new(), left: 0.0 };
+    let many = hypotheses(&now).len();
+    for round in 0..MOST {
+        let room = MOST.saturating_sub(now.set.findings().count());
+        let all = open(hypotheses(&now), &now, problem)?;
+        let cheapest = all.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
+        // A nominal model that leaves nothing is still asked what these recordings can show.
+        if room == 0 || round > 0 && remainder(problem, &now)?.rise < cheapest {
+            break;
+        }
+        let (pool, grown) = linear_sets(problem, &mut now, all, room.min(AT_ONCE))?;
+        if round == 0 {
+            (found.shown, found.left) = (shown(&pool, &grown), grown.left);
+        }
+        let before = criterion(&now, many);
+        let mut best: Option<Fitted> = None;
+        let mut enough: Vec<Vec<String>> = Vec::new();
+        for set in chosen(&grown.sets, now.score) {
+            let titles: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
+            // What adds to a set that leaves nothing adds nothing.
+            if enough.iter().any(|known| known.iter().all(|t| titles.contains(t))) {
+                continue;
+            }
+            let members = set.members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
+            let start = Fitted { spread: set.spread.clone(), ..now.clone() };
+            let Ok(fit) = problem.fit(&start, members, LOOK) else { continue };
+            let after = criterion(&fit, many);
+            let (promised, brought) = (now.score - set.score, now.score - fit.score);
+            watch.step(&format!(
+                "  {}: promised {promised:.1}, brought {brought:.1}, criterion {:.1}",
+                names(&fit.set),
+                after - before
+            ));
+            if remainder(problem, &fit)?.rise < cheapest {
+                enough.push(titles.clone());
+            }
+            let scores = [now.score, fit.score];
+            let set = fit.set.clone();
+            found.tried.push(Tried { round, set, added: titles, scores, criteria: [before, after], promised });
+            if after < best.as_ref().map_or(before, |b| criterion(b, many)) {
+                best = Some(fit);
+            }
+        }
+        let Some(best) = best else { break };
+        now = problem.fit(&best, best.set.clone(), END)?;
+        now = without_idle(problem, now, many)?;
+        watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
+    }
+    found.best = now;
+    Ok(found)
+}
+
+/// What a fit leaves beyond noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Remainder {
+    /// Rise of −2 log likelihood where there are neither unknown forces nor more noise than is known.
+    pub rise: f64,
+    /// What noise alone exceeds with a probability of one in a hundred.
+    pub bound: f64,
+}
+
+/// Likelihood ratio of unknown forces and further noise.
+///
+/// Each of m variances at the edge of what it may be adds half a χ² of one degree (Self and Liang 1987): mean ½, variance 5/4 each; the bound is
+/// that sum's 99 % point as of a gamma distribution (Wilson–Hilferty).
+pub fn remainder(problem: &Problem<'_>, fit: &Fitted) -> Result<Remainder, DiagnoseError> {
+    let mut bare = fit.clone();
+    let made = problem.linearise(&mut bare, &[], true)?;
+    let chains = made.chains(&[]);
+    let at = |spread: &Spread| {
+        let k = sum(&products(&chains, spread));
+        k.gram[(0, 0)] + k.log_det
+    };
+    let stated = (1.0 + problem.stage.doubt).sqrt();
+    let silent = Spread { force: &fit.spread.force * NEXT_TO_NOTHING, noise: fit.spread.noise.map(|x| x.min(stated)) };
+    let (mean, variance) = (0.5 * problem.variances() as f64, 1.25 * problem.variances() as f64);
+    // A gamma distribution of that mean and variance: the cube root is nearly normal.
+    let shape = mean * mean / variance;
+    let bound = mean * (1.0 - 1.0 / (9.0 * shape) + ONE_IN_HUNDRED / (9.0 * shape).sqrt()).powi(3);
+    Ok(Remainder { rise: at(&silent) - at(&fit.spread), bound })
+}
+
+/// Normal score that is exceeded once in a hundred times.
+const ONE_IN_HUNDRED: f64 = 2.326;
+
+/// What the information matrix says of every hypothesis, the most promising first.
+fn shown(pool: &Pool, grown: &Grown) -> Vec<(Hypothesis, Score)> {
+    grown.scores.iter().map(|s| (pool.hypotheses[s.hypothesis].clone(), s.clone())).collect()
+}
+
+/// Hypotheses that are not in a set yet, at joints where a force is missing.
+fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>) -> Result<Vec<Hypothesis>, DiagnoseError> {
+    let mut bare = now.clone();
+    let made = problem.linearise(&mut bare, &[], true)?;
+    let chains = made.chains(&[]);
+    let at = |spread: &Spread| {
+        let k = sum(&products(&chains, spread));
+        k.gram[(0, 0)] + k.log_det
+    };
+    let here = at(&now.spread);
+    let without = |j: usize| {
+        let mut spread = now.spread.clone();
+        spread.force[j] *= NEXT_TO_NOTHING;
+        at(&spread) - here
+    };
+    let rises: Vec<f64> = (0..problem.forces.len()).map(without).collect();
+    let largest = rises.iter().copied().fold(0.0, f64::max);
+    let is_dull = |place: &str| {
+        let own = problem.forces.iter().zip(&rises).filter(|(f, _)| f.place == place);
+        let rise = own.map(|(_, rise)| *rise).reduce(f64::max);
+        place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
+    };
+    let is_in = |h: &Hypothesis| now.set.findings().any(|(m, _)| m.title() == h.title());
+    Ok(all.into_iter().filter(|h| !is_in(h) && !is_dull(&h.place)).collect())
+}
+
+/// Factor of a force that is held to be none.
+const NEXT_TO_NOTHING: f64 = 1e-3;
+
+/// Linear sets beside a fit, the best first.
+fn linear_sets(
+    problem: &Problem<'_>,
+    now: &mut Fitted,
+    all: Vec<Hypothesis>,
+    most: usize,
+) -> Result<(Pool, Grown), DiagnoseError> {
+    let slots = now.set.slots();
+    let active = vary(problem.plant, &now.set, &slots, &first_sizes(&now.set))?;
+    let pool = Pool::new(problem.plant, &now.set, all)?;
+    let watch = problem.stage.work.watch;
+    watch.step(&format!("{} hypotheses, {} columns", pool.hypotheses.len(), pool.variations.len()));
+    let variations: Vec<_> = active.iter().chain(&pool.variations).cloned().collect();
+    let made = problem.linearise(now, &variations, true)?;
+    watch.step("columns taken");
+    let ridge = ridge_of(&now.set, slots.len());
+    let none = estimate(&made.chains(&(0..slots.len()).collect::<Vec<_>>()), Some(&ridge), &now.spread, 2);
+    let ground = Ground { runs: &made.runs, ridge: &ridge, pool: &pool, active: slots.len(), count: made.count };
+    let sets = ground.grow(&none, most);
+    watch.step("sets grown");
+    Ok((pool, sets))
+}
+
+/// The sets that are worth a fit: those that promise most by the criterion, smaller ones first.
+fn chosen(sets: &[LinearSet], before: f64) -> Vec<&LinearSet> {
+    let most = sets.iter().map(|s| before - s.score).fold(0.0, f64::max);
+    let worth = |s: &&LinearSet| before - s.score >= PROMISING * most;
+    let mut chosen: Vec<&LinearSet> = sets.iter().filter(worth).take(FITTED).collect();
+    let single = sets.iter().find(|s| s.members.len() == 1).filter(|s| !chosen.iter().any(|c| std::ptr::eq(*c, *s)));
+    chosen.extend(single);
+    chosen.sort_by_key(|s| s.members.len());
+    chosen
+}
+
+/// A fit without members that are not worth their price.
+fn without_idle(problem: &Problem<'_>, mut now: Fitted, many: usize) -> Result<Fitted, DiagnoseError> {
+    while now.set.findings().count() > 1 {
+        let mut better = None;
+        for m in (0..now.set.members.len()).rev().filter(|m| !now.set.members[*m].0.is_tolerated()) {
+            let Ok(less) = problem.fit(&now, now.set.without(m), LOOK) else { continue };
+            if criterion(&less, many) < better.as_ref().map_or(criterion(&now, many), |b| criterion(b, many)) {
+                better = Some(less);
+            }
+        }
+        let Some(less) = better else { break };
+        now = problem.fit(&less, less.set.clone(), END)?;
+    }
+    Ok(now)
+}
+
+/// Members in a line.
+fn names(set: &EffectSet) -> String {
+    let found: Vec<String> = set.findings().map(|(h, x)| format!("{} ({})", h.title(), told(h, x))).collect();
+    if found.is_empty() { "nothing".to_owned() } else { found.join("; ") }
+}
+
+/// Hypotheses about a model's own parts.
+pub fn hypotheses_of(built: &crate::plant::Built, tapes: &[crate::tape::Tape], own: &Facts) -> Vec<Hypothesis> {
+    crate::catalogue::hypotheses(&Facts::new(built, tapes).of_parts(own))
+}

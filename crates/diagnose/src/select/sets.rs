@@ -1,0 +1,233 @@
+//! Sets of effects in the linear model: grown one by one, several at a time, each with the spread that is likeliest beside it.
+
+use super::pool::{Entry, Pool, price};
+use crate::fit::pseudo_inverse;
+use crate::identify::chain::Marginal;
+use crate::identify::marginal::{Chain, Estimate, Linear, Spread, estimate, products, solve, sum, wide_products};
+use crate::screen::{Score, find_shown};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+/// A set that the linear model holds for possible.
+#[derive(Clone, Debug)]
+pub struct LinearSet {
+    /// Entries of the pool, and coordinates to begin a fit with.
+    pub members: Vec<(usize, Vec<f64>)>,
+    /// Criterion: −2 log likelihood and the price of its members.
+    pub criterion: f64,
+    /// −2 log likelihood.
+    pub score: f64,
+    /// What it leaves beyond noise.
+    pub left: f64,
+    /// Spread beside it.
+    pub spread: Spread,
+}
+
+/// What came of growing sets.
+#[derive(Clone, Debug)]
+pub struct Grown {
+    /// The sets, the best by the criterion first.
+    pub sets: Vec<LinearSet>,
+    /// What each entry promised alone, the best first.
+    pub scores: Vec<Score>,
+    /// What the model without any leaves beyond noise, −2 log likelihood.
+    pub left: f64,
+}
+
+/// What an entry promises beside a set.
+struct Promise {
+    entry: usize,
+    criterion: f64,
+    score: Score,
+}
+
+/// What sets are grown in.
+pub struct Ground<'a> {
+    /// The runs, the columns of numbers that are fitted already first, then those of the pool.
+    pub runs: &'a [Linear],
+    /// Products of the priors of the former.
+    pub ridge: &'a DMatrix<f64>,
+    /// Hypotheses.
+    pub pool: &'a Pool,
+    /// Numbers that are fitted already.
+    pub active: usize,
+    /// Residuals.
+    pub count: usize,
+}
+
+/// Sets of one size that are estimated with a spread of their own, and that grow further.
+const ESTIMATED: usize = 8;
+const GROWN: usize = 3;
+/// Share of what the best smaller set leaves beyond noise that one more effect has to take away.
+const FURTHER: f64 = 0.3;
+/// Entries that take part in sets of two and more: the best by themselves.
+const TAKING_PART: usize = 30;
+/// Steps of a spread.
+const STEPS: usize = 4;
+/// Factor of forces that are held to be none.
+const NO_FORCE: f64 = 1e-3;
+
+impl Ground<'_> {
+    /// Sets of up to `most` effects; `none`: the model without any.
+    pub fn grow(&self, none: &Estimate, most: usize) -> Grown {
+        let (score, left) = (none.score, none.score - self.silent(&[], &none.spread));
+        let empty = LinearSet { members: Vec::new(), criterion: score, score, left, spread: none.spread.clone() };
+        let (mut beam, mut all) = (vec![empty], Vec::<LinearSet>::new());
+        let mut best = none.score;
+        let mut scores = Vec::new();
+        let mut entries: Vec<usize> = (0..self.pool.entries.len()).collect();
+        for _ in 0..most {
+            let mut grown: Vec<LinearSet> = Vec::new();
+            for set in &beam {
+                let (sets, promised) = self.grown(set, &entries);
+                grown.extend(sets);
+                if set.members.is_empty() {
+                    entries = promised.iter().map(|p| p.entry).take(TAKING_PART).collect();
+                    scores = promised.into_iter().map(|p| p.score).collect();
+                }
+            }
+            if !beam.iter().any(|set| self.may_grow(set)) {
+                break;
+            }
+            grown.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
+            grown.dedup_by(|a, b| self.titles(a) == self.titles(b));
+            // What the linear model leaves of an effect may look like another one: that has to take a good part of it away.
+            let least = beam.iter().map(|set| set.left).fold(f64::INFINITY, f64::min);
+            let is_further = |g: &LinearSet| g.members.len() == 1 || g.left < (1.0 - FURTHER) * least;
+            grown.retain(|g| g.criterion < best && is_further(g));
+            all.extend(grown.iter().cloned());
+            grown.truncate(GROWN);
+            let Some(first) = grown.first() else { break };
+            best = first.criterion;
+            beam = grown;
+        }
+        all.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
+        Grown { sets: all, scores, left }
+    }
+
+    fn titles(&self, set: &LinearSet) -> Vec<String> {
+        let mut titles: Vec<String> = set.members.iter().map(|m| self.pool.of(m.0).title()).collect();
+        titles.sort();
+        titles
+    }
+
+    /// Whether what a set leaves is more than noise, by as much as the cheapest effect costs.
+    fn may_grow(&self, set: &LinearSet) -> bool {
+        let cheapest = (0..self.pool.entries.len()).map(|e| self.price(&[e])).fold(f64::INFINITY, f64::min);
+        set.left > cheapest
+    }
+
+    /// −2 log likelihood of a model that leaves noise alone.
+    fn silent(&self, members: &[usize], spread: &Spread) -> f64 {
+        let none = Spread { force: &spread.force * NO_FORCE, noise: spread.noise.map(|_| 1.0) };
+        sum(&products(&self.chains(&self.columns(members)), &none)).log_det + self.count as f64
+    }
+
+    /// A set with one more effect of some entries, the most promising ones; and these entries by what they promise.
+    fn grown(&self, set: &LinearSet, among: &[usize]) -> (Vec<LinearSet>, Vec<Promise>) {
+        let known: Vec<usize> = set.members.iter().map(|m| m.0).collect();
+        let k = self.products_of(&[&known[..], among].concat(), &set.spread);
+        let is_new =
+            |e: &usize| known.iter().all(|k| self.pool.entries[*k].hypothesis != self.pool.entries[*e].hypothesis);
+        let entries: Vec<usize> = among.iter().copied().filter(is_new).collect();
+        let promise = |entry: &usize| self.promise(&k, (&known, *entry), set);
+        let mut promised: Vec<Promise> = entries.par_iter().filter_map(promise).collect();
+        promised.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
+        // Of the points of one hypothesis the two best.
+        let mut chosen: Vec<usize> = Vec::new();
+        for entry in promised.iter().map(|p| p.entry) {
+            let own = self.pool.entries[entry].hypothesis;
+            let alike = chosen.iter().filter(|c| self.pool.entries[**c].hypothesis == own).count();
+            if alike < 2 && chosen.len() < ESTIMATED {
+                chosen.push(entry);
+            }
+        }
+        let of = |entry: &usize| self.estimated(&[&known[..], &[*entry]].concat(), &set.spread);
+        (chosen.par_iter().filter_map(of).collect(), promised)
+    }
+
+    /// What one more entry promises at the spread of a set; none where no such effect is possible.
+    fn promise(&self, k: &Marginal, (known, entry): (&[usize], usize), set: &LinearSet) -> Option<Promise> {
+        let members = [known, &[entry]].concat();
+        let found = self.solved(k, &members, &set.spread);
+        let start = self.possible(&members, &found)?.pop()?.1;
+        let Entry { hypothesis, point, columns } = &self.pool.entries[entry];
+        let own = found.theta.len() - columns.len();
+        let inverse = found.covariance.view((own, own), (columns.len(), columns.len())).into_owned();
+        let information = pseudo_inverse(&inverse);
+        let of = &self.pool.hypotheses[*hypothesis];
+        let score = Score {
+            hypothesis: *hypothesis,
+            point: *point,
+            score: set.score - found.score,
+            rank: columns.len(),
+            start,
+            shown: find_shown(of, &of.screens[*point], (&information, &inverse)),
+        };
+        Some(Promise { entry, criterion: self.price(&members) + found.score, score })
+    }
+
+    /// Products of the columns of some entries, in their places among all.
+    fn products_of(&self, entries: &[usize], spread: &Spread) -> Marginal {
+        let columns = self.columns(entries);
+        let few = wide_products(self.runs, &columns, spread);
+        let all = self.active + self.pool.variations.len();
+        let places: Vec<usize> = columns.iter().copied().chain([all]).collect();
+        let mut gram = DMatrix::zeros(all + 1, all + 1);
+        for (i, a) in places.iter().enumerate() {
+            places.iter().enumerate().for_each(|(j, b)| gram[(*a, *b)] = few.gram[(i, j)]);
+        }
+        Marginal { gram, log_det: few.log_det }
+    }
+
+    fn chains(&self, columns: &[usize]) -> Vec<Chain> {
+        self.runs.iter().map(|r| r.chain(columns)).collect()
+    }
+
+    fn columns(&self, members: &[usize]) -> Vec<usize> {
+        let own = members.iter().flat_map(|m| self.pool.entries[*m].columns.clone()).map(|c| self.active + c);
+        (0..self.active).chain(own).collect()
+    }
+
+    fn ridge_for(&self, columns: usize) -> DMatrix<f64> {
+        let mut ridge = DMatrix::zeros(columns + 1, columns + 1);
+        let n = self.active;
+        ridge.view_mut((0, 0), (n, n)).copy_from(&self.ridge.view((0, 0), (n, n)));
+        ridge.view_mut((0, columns), (n, 1)).copy_from(&self.ridge.view((0, n), (n, 1)));
+        ridge.view_mut((columns, 0), (1, n)).copy_from(&self.ridge.view((n, 0), (1, n)));
+        ridge
+    }
+
+    fn solved(&self, k: &Marginal, members: &[usize], spread: &Spread) -> Estimate {
+        let mut columns = self.columns(members);
+        let ridge = self.ridge_for(columns.len());
+        columns.push(k.gram.ncols() - 1);
+        let gram = DMatrix::from_fn(columns.len(), columns.len(), |i, j| k.gram[(columns[i], columns[j])]);
+        solve(&Marginal { gram, log_det: k.log_det }, Some(&ridge), spread)
+    }
+
+    /// Coordinates of all members; none where one of them is impossible.
+    fn possible(&self, members: &[usize], found: &Estimate) -> Option<Vec<(usize, Vec<f64>)>> {
+        let mut at = self.active;
+        let start = |m: &usize| {
+            let own = self.pool.entries[*m].columns.len();
+            let amplitudes = &found.theta.as_slice()[at..at + own];
+            at += own;
+            self.pool.start(*m, amplitudes).map(|x| (*m, x))
+        };
+        members.iter().map(start).collect()
+    }
+
+    fn estimated(&self, members: &[usize], spread: &Spread) -> Option<LinearSet> {
+        let columns = self.columns(members);
+        let found = estimate(&self.chains(&columns), Some(&self.ridge_for(columns.len())), spread, STEPS);
+        let left = found.score - self.silent(members, &found.spread);
+        let members = self.possible(members, &found)?;
+        let criterion = found.score + self.price(&members.iter().map(|m| m.0).collect::<Vec<_>>());
+        criterion.is_finite().then(|| LinearSet { members, criterion, left, score: found.score, spread: found.spread })
+    }
+
+    fn price(&self, members: &[usize]) -> f64 {
+        members.iter().map(|m| price(self.pool.of(*m), self.count, self.pool.hypotheses.len())).sum()
+    }
+}
