@@ -86,11 +86,32 @@ pub fn diagnose_with(
     set: &RecordingSet,
     (effort, watch): (f64, &dyn Watch),
 ) -> Result<(Diagnosis, Evidence), DiagnoseError> {
-    let work = Work::new(watch, effort);
+    // What runs as a whole explain to the last is explained; where they leave something, or parts touch, windows are asked as well.
+    let whole = diagnose_whole(scenario.clone(), set, &Work::new(watch, effort)).unwrap_or_else(|error| {
+        watch.step(&format!("along whole runs nothing was found: {error}"));
+        None
+    });
+    if let Some(whole) = whole {
+        if merit(&whole.0) >= 1.0 {
+            return Ok(whole);
+        }
+        watch.step("along whole runs that explains too little: windows");
+        let found = diagnose_in_windows(scenario, set, &Work::new(watch, effort))?;
+        return Ok(if merit(&whole.0) > merit(&found.0) { whole } else { found });
+    }
+    diagnose_in_windows(scenario, set, &Work::new(watch, effort))
+}
+
+/// The same in windows of one length, and of another where that explains too little.
+fn diagnose_in_windows(
+    scenario: Scenario,
+    set: &RecordingSet,
+    work: &Work<'_>,
+) -> Result<(Diagnosis, Evidence), DiagnoseError> {
+    let watch = work.watch;
     let [first, second] = WINDOWS;
-    let mut found = diagnose_in(scenario.clone(), set, &work, first)?;
-    let needs_no_windows = along::may_follow(&Plant::new(scenario.clone()).build(&[])?);
-    if merit(&found.0) >= SETTLED || set.window_s.is_some() || needs_no_windows {
+    let mut found = diagnose_in(scenario.clone(), set, work, first)?;
+    if merit(&found.0) >= SETTLED || set.window_s.is_some() {
         return Ok(found);
     }
     let is_told = work.was_ended();
@@ -99,7 +120,7 @@ pub fn diagnose_with(
         return Ok(found);
     }
     watch.step("that explains too little: windows of another length");
-    let other = diagnose_in(scenario, set, &work, second)?;
+    let other = diagnose_in(scenario, set, work, second)?;
     Ok(if merit(&other.0) > merit(&found.0) { other } else { found })
 }
 
@@ -118,13 +139,21 @@ const SPENT: &str = "The search was ended by its limit of work before it had loo
 /// Share of a mismatch with which a search is content.
 const SETTLED: f64 = 0.9;
 
-/// The same in so many windows of the longest run.
-fn diagnose_in(
+/// A recording beside its nominal model, before anything is searched for.
+struct Prepared<'w> {
+    plant: Plant,
+    inspection: record::inspect::Inspection,
+    begun: Begun,
+    clock: Clock<'w>,
+}
+
+/// The longest run in so many windows.
+fn prepare<'w>(
     scenario: Scenario,
     set: &RecordingSet,
-    work: &Work<'_>,
+    work: &'w Work<'w>,
     parts: f64,
-) -> Result<(Diagnosis, Evidence), DiagnoseError> {
+) -> Result<Prepared<'w>, DiagnoseError> {
     let mut clock = Clock { begun: Instant::now(), last: (0.0, work.total().simulated), work, timings: Vec::new() };
     clock.stage("inspect the recording", 0.0);
     let inspection = record::inspect::inspect(set);
@@ -132,15 +161,22 @@ fn diagnose_in(
     let own = scenario.integrator;
     let mut plant = Plant::new(scenario);
     let (tapes, built) = load(&mut plant, set)?;
-    let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } =
-        begin(&plant, (&built, tapes), set, parts, &mut clock)?;
-    said.extend(said_of_scheme(own, &plant));
+    let mut begun = begin(&plant, (&built, tapes), set, parts, &mut clock)?;
+    begun.said.extend(said_of_scheme(own, &plant));
+    Ok(Prepared { plant, inspection, begun, clock })
+}
+
+/// The same in so many windows of the longest run.
+fn diagnose_in(
+    scenario: Scenario,
+    set: &RecordingSet,
+    work: &Work<'_>,
+    parts: f64,
+) -> Result<(Diagnosis, Evidence), DiagnoseError> {
+    let Prepared { plant, inspection, begun, mut clock } = prepare(scenario, set, work, parts)?;
+    let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } = begun;
     let pace = discretisation.pace;
     let mut stage = Stage { tapes: &thinned, pace, work, doubt };
-    if along::may_follow(&built) {
-        let begun = Begun { tapes, thinned: thinned.clone(), doubt, window, discretisation, nominal, said };
-        return diagnose_along(&stage, &plant, (begun, set), (&inspection, clock));
-    }
     let Sought { nominal, whole, located, standing, attempts } =
         seek(&mut stage, &plant, (nominal, &tapes, window), &mut clock)?;
     clock.stage("fit to all samples", 0.75);
@@ -183,15 +219,19 @@ fn diagnose_in(
     Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
 }
 
-/// The same along whole runs, where parts do not touch.
-fn diagnose_along(
-    few: &Stage<'_>,
-    plant: &Plant,
-    (begun, set): (Begun, &RecordingSet),
-    (inspection, mut clock): (&record::inspect::Inspection, Clock<'_>),
-) -> Result<(Diagnosis, Evidence), DiagnoseError> {
-    let Begun { tapes, window, discretisation, nominal, mut said, .. } = begun;
-    let work = few.work;
+/// The same along whole runs; none where parts touch.
+fn diagnose_whole(
+    scenario: Scenario,
+    set: &RecordingSet,
+    work: &Work<'_>,
+) -> Result<Option<(Diagnosis, Evidence)>, DiagnoseError> {
+    if !along::may_follow(&Plant::new(scenario.clone()).build(&[])?) {
+        return Ok(None);
+    }
+    let Prepared { plant, inspection, begun, mut clock } = prepare(scenario, set, work, WINDOWS[0])?;
+    let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } = begun;
+    let few = &Stage { tapes: &thinned, pace: discretisation.pace, work, doubt };
+    let plant = &plant;
     clock.stage("locate the missing force", 0.15);
     let own = Facts::new(&nominal.built, few.tapes);
     let located = locate(few, plant, &nominal, places(&own, window))?;
@@ -241,7 +281,7 @@ fn diagnose_along(
         timings: clock.timings,
         discretisation,
     };
-    Ok(tell::tell(&findings, &stage, inspection, &plant.scenario.name, &set.folder))
+    Ok(Some(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder)))
 }
 
 /// What was detected, what was found, and what of it remains.

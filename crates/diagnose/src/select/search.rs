@@ -1,7 +1,7 @@
 //! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
 
 use super::pool::{Pool, price};
-use super::sets::{Ground, Grown, LinearSet};
+use super::sets::{FURTHER, Ground, Grown, LinearSet};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
@@ -113,7 +113,11 @@ pub fn search(
             }
         }
         let Some(best) = best else { break };
-        now = problem.fit(&best, best.set.clone(), END)?;
+        // What takes little of what an accepted set leaves stands for something that is not in the library.
+        if round > 0 && now.score - best.score < FURTHER * grown.left {
+            break;
+        }
+        now = problem.fit(&best, best.set.clone(), END).unwrap_or(best);
         now = without_idle(problem, now, many)?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
@@ -233,7 +237,7 @@ fn without_idle(problem: &Problem<'_>, mut now: Fitted, many: usize) -> Result<F
             }
         }
         let Some(less) = better else { break };
-        now = problem.fit(&less, less.set.clone(), END)?;
+        now = problem.fit(&less, less.set.clone(), END).unwrap_or(less);
     }
     Ok(now)
 }
