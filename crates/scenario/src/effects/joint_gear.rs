@@ -24,7 +24,7 @@ pub static JOINT_ELASTICITY: EffectDef = EffectDef {
     equation: "τ = k (θ − q) + d (θ̇ − q̇) on the link side, B θ̈ = u − τ on the motor side; θ: motor side in joint units, B: the joint's \
                reflected inertia, u: the drive's effort.",
     source: SOURCE,
-    build: Build::Gear(gear),
+    build: Build::Gear(|entry, joint, faults| gear(entry, joint, 0.0, faults)),
     identify: Identify {
         candidates: Candidates::Joint(elastic),
         tier: Tier::Exotic,
@@ -53,7 +53,7 @@ pub static JOINT_BACKLASH: EffectDef = EffectDef {
     ],
     equation: "As joint-elasticity where |θ − q| > gap/2, with the spring's deflection counted from the edge of the play; no effort within.",
     source: SOURCE,
-    build: Build::Gear(gear),
+    build: Build::Gear(|entry, joint, faults| gear(entry, joint, entry.number("gap"), faults)),
     identify: Identify {
         candidates: Candidates::Joint(play),
         tier: Tier::Exotic,
@@ -69,8 +69,8 @@ pub static JOINT_BACKLASH: EffectDef = EffectDef {
 };
 
 /// A gear that yields; it takes the joint's reflected inertia behind its spring. A rigid one is none.
-fn gear(entry: &Entry<'_>, joint: &mut multibody::Joint, faults: &mut Faults<'_>) -> Option<GearSpec> {
-    let (stiffness, damping, gap) = (entry.number("k"), entry.number("d"), entry.number("gap"));
+fn gear(entry: &Entry<'_>, joint: &mut multibody::Joint, gap: f64, faults: &mut Faults<'_>) -> Option<GearSpec> {
+    let (stiffness, damping) = (entry.number("k"), entry.number("d"));
     if stiffness.is_infinite() {
         if gap > 0.0 {
             faults.add(&entry.key("k"), "must be finite where there is play: teeth that meet are springs");

@@ -105,8 +105,6 @@ use facts::{ActuatorFact, BodyFact, ContactFact, JointFact, SensorFact, Survey};
 use identify::{Alternative, Candidates, Concerns, Identify, Minima, Start, Tier};
 use sim::Grain;
 
-use crate::spelling::hint_for_name;
-
 /// All of them. At a place a diagnosis asks them in this order.
 pub static ALL: [&EffectDef; 49] = [
     &JOINT_VISCOUS_FRICTION,
@@ -163,11 +161,6 @@ pub static ALL: [&EffectDef; 49] = [
 /// The effect of that name.
 pub fn find(name: &str) -> Option<&'static EffectDef> {
     catalogue().find(|effect| effect.name == name)
-}
-
-/// Continues the sentence that a name is unknown: the nearest one, or all.
-pub fn hint(name: &str) -> String {
-    hint_for_name(name, catalogue().map(|effect| effect.name))
 }
 
 /// All effects, in the order of [`ALL`].

@@ -86,12 +86,12 @@ impl<'a> Entry<'a> {
 
     /// Whether the file says anything of a parameter.
     pub(crate) fn is_given(&self, name: &str) -> bool {
-        self.spec.params.contains_key(name)
+        self.value(name).is_some()
     }
 
     /// A number, where the file gives it.
     pub(crate) fn given(&self, name: &str) -> Option<f64> {
-        self.spec.params.get(name).and_then(ParamValue::number)
+        self.value(name).and_then(ParamValue::number)
     }
 
     /// A vector; one number is along no axis and stands for (x, x, x) of nothing: see [`Entry::numbers`].
@@ -104,7 +104,7 @@ impl<'a> Entry<'a> {
 
     /// The numbers that the file gives.
     pub(crate) fn numbers(&self, name: &str) -> Option<&'a [f64]> {
-        self.spec.params.get(name).and_then(ParamValue::numbers)
+        self.value(name).and_then(ParamValue::numbers)
     }
 
     /// The word of a choice; its first where the file gives none.
@@ -113,10 +113,16 @@ impl<'a> Entry<'a> {
             Some(Shape::Choice([first, ..])) => *first,
             _ => "",
         };
-        match self.spec.params.get(name) {
+        match self.value(name) {
             Some(ParamValue::Text(word)) => word,
             _ => default,
         }
+    }
+
+    /// What the file says of a parameter. A definition that asks for one which it does not have is a bug in it.
+    fn value(&self, name: &str) -> Option<&'a ParamValue> {
+        debug_assert!(self.def.parameter(name).is_some(), "{} asks for a parameter {name} and has none", self.def);
+        self.spec.params.get(name)
     }
 
     fn neutral(&self, name: &str) -> f64 {
