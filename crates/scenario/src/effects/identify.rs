@@ -15,11 +15,11 @@ pub struct Identify {
     /// Kind of claim.
     pub tier: Tier,
     /// Standard deviations of its coordinates, by a scenario's tolerances: where it corrects a nominal number that has one.
-    pub tolerance: Option<fn(&Tolerance, &[Coordinate]) -> Vec<f64>>,
+    pub tolerance: Option<Deviations>,
     /// What it has to bring at a place beside what its numbers cost, in the criterion.
     pub penalty: Option<fn(&str) -> f64>,
     /// The laws that it becomes at a place where some of its numbers do nothing, and likelier readings of the same thing there.
-    pub nested: Option<fn(&str, &[f64]) -> Vec<Alternative>>,
+    pub nested: Option<Nested>,
     /// How amplitudes of secants become coordinates to start a fit with.
     pub start: Start,
     /// How many minima its cost has.
@@ -54,6 +54,10 @@ pub enum Candidates {
     Nowhere,
 }
 
+/// Standard deviations of coordinates by a scenario's tolerances.
+pub type Deviations = fn(&Tolerance, &[Coordinate]) -> Vec<f64>;
+/// Nested laws at a place and some coordinates.
+pub type Nested = fn(&str, &[f64]) -> Vec<Alternative>;
 /// Candidates at a joint.
 pub type AtJoint = fn(&JointFact, &Survey<'_>) -> Vec<Candidate>;
 /// Candidates at a body.

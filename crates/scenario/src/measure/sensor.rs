@@ -78,6 +78,9 @@ impl SensorModel {
     }
 }
 
+/// What stands before the prefix of channels in the place of a sensor.
+const PREFIX: &str = "sensor:";
+
 /// The part of a quantity that a prefix of channels means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
@@ -116,8 +119,9 @@ impl SensorEntry<'_> {
     }
 }
 
-/// What an effect makes of a sensor, where it is one of a sensor.
+/// What an effect makes of a sensor, where it is one of a sensor. Asked for every channel of every model that a search builds: by the place first.
 fn build_of(effect: &Effect) -> Option<SensorBuild> {
+    effect.place.strip_prefix(PREFIX)?;
     match effects::find(&effect.name)?.build {
         Build::Sensor(build) => Some(build),
         Build::SetMass(_)
@@ -140,7 +144,7 @@ fn build_of(effect: &Effect) -> Option<SensorBuild> {
 
 /// The part that a place, `sensor:` and a prefix, means of a quantity of these names.
 fn part_of_any(place: &str, names: &[String]) -> Option<Part> {
-    let prefix = place.strip_prefix("sensor:")?;
+    let prefix = place.strip_prefix(PREFIX)?;
     names.iter().find_map(|name| part_of(prefix, name))
 }
 
@@ -149,7 +153,7 @@ pub(crate) fn find_fault(scenario: &Scenario, model: &Model, effect: &Effect) ->
     let build = build_of(effect)?;
     let all = all_names(scenario, model);
     let meant: Vec<&Vec<String>> = all.iter().filter(|names| part_of_any(&effect.place, names).is_some()).collect();
-    let prefix = effect.place.strip_prefix("sensor:").unwrap_or(&effect.place);
+    let prefix = effect.place.strip_prefix(PREFIX).unwrap_or(&effect.place);
     if meant.is_empty() {
         return Some(format!(
             "no channel begins with \"{prefix}\"{}",
