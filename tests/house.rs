@@ -152,6 +152,37 @@ fn the_readme_is_short() {
     );
 }
 
+/// Files that still tell effects by their names: forces that a place could miss stand for effects there.
+const TELL_BY_NAME: [&str; 1] = ["locate.rs"];
+
+/// The product code of a file: without its tests and comments.
+fn code(text: &str) -> String {
+    let product = text.split("#[cfg(test)]").next().unwrap_or(text);
+    product.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+}
+
+/// An effect's name is in its definition; what else speaks of the effect does so by the definition, so that nothing can forget it.
+#[test]
+fn no_effect_is_told_by_its_name_outside_its_definition() {
+    let mut files = Vec::new();
+    sources(&root().join("crates"), &mut files);
+    files.retain(|f| !f.components().any(|c| ["tests", "examples"].iter().any(|skipped| c.as_os_str() == *skipped)));
+    files.retain(|f| !f.starts_with(root().join("crates/scenario/src/effects")) && !f.ends_with("tests.rs"));
+    files.retain(|f| !TELL_BY_NAME.iter().any(|name| f.ends_with(name)));
+    // A single word may be a word.
+    let names: Vec<&str> = softdock::scenario::effects::models().map(|e| e.name).filter(|n| n.contains('-')).collect();
+    assert!(names.len() > 40 && files.len() > 200);
+    for file in files {
+        let code = code(&fs::read_to_string(&file).unwrap());
+        let told = names.iter().find(|name| code.contains(&format!("\"{name}\"")));
+        assert!(
+            told.is_none(),
+            "{} tells an effect by its name, {told:?}; use its definition in scenario::effects",
+            file.display()
+        );
+    }
+}
+
 /// The README, the tables of results and the guide.
 fn documents() -> Vec<PathBuf> {
     let mut found = vec![root().join("README.md")];

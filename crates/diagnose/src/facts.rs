@@ -5,9 +5,10 @@ use crate::tape::Tape;
 use contact::{Normal, NormalLaw};
 use friction::Friction;
 use multibody::JointKind;
-use scenario::measure::Quantity;
+use scenario::effects::facts::Survey;
 use sim::ActuatorKind;
-use spatial::{Mat3, Vec3};
+
+pub use scenario::effects::facts::{BodyFact, ContactFact, JointFact, SensorFact};
 
 /// Places at which effects could act.
 #[derive(Clone, Debug, Default)]
@@ -24,66 +25,6 @@ pub struct Facts {
     pub sensors: Vec<SensorFact>,
     /// Longest run, s.
     pub duration: f64,
-}
-
-/// A joint.
-#[derive(Clone, Debug)]
-pub struct JointFact {
-    /// Its name.
-    pub name: String,
-    /// Index into `v`.
-    pub coordinate: usize,
-    /// Reflected rotor inertia, kg·m² or kg.
-    pub armature: f64,
-    /// Largest command, N·m or N; zero where none was recorded.
-    pub largest_command: f64,
-}
-
-/// A body.
-#[derive(Clone, Debug)]
-pub struct BodyFact {
-    /// Its link.
-    pub name: String,
-    /// Mass, kg.
-    pub mass: f64,
-    /// Centre of mass, link frame, m.
-    pub com: Vec3,
-    /// About the centre of mass, kg·m².
-    pub inertia: Mat3,
-    /// The base's free components; all false for the link of an arm on a fixed base.
-    pub mask: [bool; 6],
-    /// Whether it is a vehicle's base.
-    pub is_base: bool,
-    /// Whether nothing but its own inertia moves it: no thruster, no contact.
-    pub is_torque_free: bool,
-}
-
-/// A contact pair.
-#[derive(Clone, Debug)]
-pub struct ContactFact {
-    /// `probe/drogue`.
-    pub name: String,
-    /// Normal law: stiffness, exponent, dissipation.
-    pub normal: Option<[f64; 3]>,
-    /// Bristle law: level, stiffness, damping.
-    pub bristle: Option<[f64; 3]>,
-    /// Mass of the lighter free body, kg.
-    pub mass: f64,
-    /// Whether both sides can move against each other in space.
-    pub has_normal_motion: bool,
-}
-
-/// A sensor.
-#[derive(Clone, Debug)]
-pub struct SensorFact {
-    /// Channel without component.
-    pub channel: String,
-    /// What it measures.
-    pub quantity: Quantity,
-    /// Components.
-    pub axes: Vec<usize>,
-    /// Noise, its unit.
-    pub sigma: f64,
 }
 
 impl Facts {
@@ -110,6 +51,11 @@ impl Facts {
 }
 
 impl Facts {
+    /// What a definition may look at around a place.
+    pub fn survey(&self) -> Survey<'_> {
+        Survey { joints: &self.joints, bodies: &self.bodies, contacts: &self.contacts, duration: self.duration }
+    }
+
     /// Without the joints and bodies that effects have brought: a mount's tip has no friction of its own.
     pub fn of_parts(mut self, nominal: &Self) -> Self {
         self.joints.retain(|j| nominal.joints.iter().any(|own| own.name == j.name));

@@ -3,9 +3,9 @@
 use crate::error::DiagnoseError;
 use record::{RecordedRun, RecordingSet};
 use scenario::measure::{Gauge, MeasureError, Mount, Quantity, SensorModel};
-use scenario::spec::{Effect, Integrator, IntegratorKind, ParamValue};
+use scenario::spec::{Effect, Integrator, IntegratorKind};
 use scenario::{DriveChannel, Scenario, Stock};
-use sim::{Actuator, ActuatorKind, DrivePath, Model, State};
+use sim::{Actuator, ActuatorKind, DrivePath, EffectKind, LineEffect, LineLaw, Model, State};
 use std::sync::{Arc, OnceLock};
 
 /// A scenario whose `[[effect]]` entries are varied, with what the recording says about it.
@@ -110,8 +110,11 @@ impl Plant {
         };
         self.stock.get_or_init(|| Stock::of(&mission));
         let model = Arc::clone(mission.world.model());
-        let late = scenario.effects.iter().filter(|e| e.name == "actuator-delay");
-        let delays = late.filter_map(|e| e.params.get("delay").and_then(ParamValue::number));
+        let delay = |kind: &EffectKind| match kind {
+            EffectKind::Line(LineEffect { law: LineLaw::Delay(delay), .. }) => Some(*delay),
+            _ => None,
+        };
+        let delay = model.effects().iter().filter_map(|effect| delay(&effect.kind)).fold(0.0, f64::max);
         let sensor = |channel: &String| {
             let gauge = Gauge::resolve(&scenario, &model, channel).ok()?;
             Some((channel.clone(), gauge, SensorModel::of(&scenario.effects, &model, channel)))
@@ -122,7 +125,7 @@ impl Plant {
             sensors: self.channels.iter().filter_map(sensor).collect(),
             mounts: Mount::all(&model),
             drives: mission.drives,
-            delay: delays.fold(0.0, f64::max),
+            delay,
             model,
         })
     }

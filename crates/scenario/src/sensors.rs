@@ -10,6 +10,7 @@
 //!
 //! A contact force is that of the last step.
 
+use crate::effects::SENSOR_DELAY;
 use crate::measure::{Gauge, Reading, SensorModel};
 use crate::spec::{Scenario, SensorKind};
 use crate::{Mission, ScenarioError};
@@ -44,7 +45,7 @@ pub(crate) fn of_mission(mission: &Mission) -> Result<Vec<Sensor>, Vec<ScenarioE
         sensors.extend(Sensor::new(scenario, model, &name, (0.0, Timing { rate: None, delay: 0.0 })));
     }
     errors.extend(sensors.iter().filter(|s| s.delay < 0.0).map(|sensor| {
-        let late = scenario.effects.iter().position(|e| e.name == "sensor-delay").unwrap_or_default();
+        let late = scenario.effects.iter().position(|e| e.name == SENSOR_DELAY.name).unwrap_or_default();
         let (name, s) = (&sensor.name, sensor.delay);
         let reason = format!(
             "makes {name} {:.3e} s early, and a run cannot record what is yet to come; leave the effect out of runs",

@@ -1,7 +1,7 @@
 //! `[[effect]]` entries: what each is checked for, where it lands, and that it is nothing at its neutral parameters.
 #![allow(clippy::unwrap_used)]
 
-use scenario::effects::{EffectName, Neutral, catalogue};
+use scenario::effects::{self, Neutral, UNKNOWN, catalogue};
 use scenario::{Mission, ScenarioErrors};
 use std::fs;
 use std::path::Path;
@@ -168,14 +168,14 @@ fn what_is_wrong_is_said_with_the_way_out() {
 
 #[test]
 fn the_catalogue_names_every_effect_once_with_a_place_and_a_neutral_point() {
-    let mut names: Vec<&str> = catalogue().map(|e| e.name.text()).collect();
-    assert_eq!(names.len(), EffectName::ALL.len());
+    let mut names: Vec<&str> = catalogue().map(|e| e.name).collect();
+    assert_eq!(names.len(), effects::ALL.len());
     names.sort_unstable();
     names.dedup();
-    assert_eq!(names.len(), EffectName::ALL.len());
-    for entry in catalogue().filter(|e| e.name != EffectName::Unknown) {
-        assert!(!entry.places.is_empty() && !entry.parameters.is_empty(), "{}", entry.name);
-        assert!(entry.parameters.iter().any(|p| p.neutral != Neutral::Shape), "{} is never neutral", entry.name);
-        assert_eq!(EffectName::parse(entry.name.text()), Some(entry.name));
+    assert_eq!(names.len(), effects::ALL.len());
+    for effect in catalogue().filter(|e| *e != &UNKNOWN) {
+        assert!(!effect.places.is_empty() && !effect.parameters.is_empty(), "{effect}");
+        assert!(effect.parameters.iter().any(|p| p.neutral != Neutral::Shape), "{effect} is never neutral");
+        assert_eq!(effects::find(effect.name), Some(effect));
     }
 }

@@ -2,6 +2,7 @@
 
 use diagnose::diagnosis::{Found, ParamValue, Verdict};
 use diagnose::place::same_place;
+use scenario::effects::{self, Corrects, UNKNOWN};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -58,11 +59,6 @@ pub struct Oracle {
     pub nominal_windowed: f64,
 }
 
-/// Corrections of inertial numbers and gains that a wrong card excuses.
-const CORRECTIONS: [&str; 5] = ["body-mass", "body-com", "body-inertia", "payload", "actuator-gain"];
-/// Corrections of contact numbers, excused where the card's contact numbers are wrong.
-const CONTACT_CORRECTIONS: [&str; 4] =
-    ["contact-stiffness", "contact-damping", "friction-coefficient", "friction-bristle-stiffness"];
 /// Words by which `nominal_errors` speaks of contact numbers.
 const CONTACT_WORDS: [&str; 5] = ["contact", "friction", "stiffness", "mu", "bristle"];
 /// A gain farther from 1 than this is no small correction.
@@ -71,7 +67,7 @@ const SMALL_GAIN: f64 = 0.03;
 impl KeyEffect {
     /// Whether the table of effects has it.
     pub fn is_named(&self) -> bool {
-        self.name != "unknown"
+        self.name != UNKNOWN.name
     }
 }
 
@@ -106,13 +102,14 @@ impl Key {
 
     /// Whether an effect that was found is a small correction of a number that the card states wrong.
     pub(super) fn allows_correction(&self, found: &Found) -> bool {
-        let name = found.name.as_str();
-        let of_contact = || {
-            let said = |what: &String| CONTACT_WORDS.iter().any(|w| what.to_lowercase().split(' ').any(|s| s == *w));
-            CONTACT_CORRECTIONS.contains(&name) && self.nominal_errors.keys().any(said)
+        let said = |what: &String| CONTACT_WORDS.iter().any(|w| what.to_lowercase().split(' ').any(|s| s == *w));
+        let is_excused = match effects::find(&found.name).map_or(Corrects::Nothing, |effect| effect.corrects) {
+            Corrects::DataSheet => true,
+            Corrects::ContactLaw => self.nominal_errors.keys().any(said),
+            Corrects::Nothing => false,
         };
         let gain = found.params.get("gain").and_then(ParamValue::number);
         let is_small = gain.is_none_or(|gain| (gain - 1.0).abs() <= SMALL_GAIN);
-        !self.nominal_errors.is_empty() && is_small && (CORRECTIONS.contains(&name) || of_contact())
+        !self.nominal_errors.is_empty() && is_small && is_excused
     }
 }

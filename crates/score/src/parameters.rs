@@ -14,7 +14,9 @@
 use crate::{Key, KeyEffect};
 use diagnose::diagnosis::{Found, ParamValue, StdErr};
 use record::page::number::short;
+use scenario::effects::{self, BODY_INERTIA, Parameter, Shown};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Allowed deviation, as a fraction.
@@ -54,9 +56,9 @@ impl Judged {
 }
 
 /// The scale of a free body without known torques: Ixx found over Ixx of the key, where Ixx was held and not fitted; else 1.
-pub(super) fn gauge(key: &Key, effects: &[Found]) -> f64 {
-    let inertia = key.effects.iter().find(|e| e.name == "body-inertia");
-    let found = effects.iter().find(|e| e.name == "body-inertia");
+pub(super) fn gauge(key: &Key, all: &[Found]) -> f64 {
+    let inertia = key.effects.iter().find(|e| e.name == BODY_INERTIA.name);
+    let found = all.iter().find(|e| e.name == BODY_INERTIA.name);
     let (Some(inertia), Some(found)) = (inertia, found) else { return 1.0 };
     let ixx = |params: &ParamValue| params.numbers().and_then(|n| n.first().copied()).filter(|x| *x > 0.0);
     let is_held = errors(found, "inertia").first().copied().flatten().is_none_or(|e| e == 0.0);
@@ -67,60 +69,50 @@ pub(super) fn gauge(key: &Key, effects: &[Found]) -> f64 {
     }
 }
 
-/// Power with which a parameter goes with the scale of the body's inertia.
-fn gauge_power(effect: &str, parameter: &str) -> f64 {
-    match (effect, parameter) {
-        ("body-inertia", "inertia")
-        | ("constant-torque", "vector")
-        | ("angular-damping" | "internal-dissipation", "c")
-        | ("internal-dissipation", "i_damper")
-        | ("slosh", "mass") => 1.0,
-        ("flexible-appendage", "coupling") => 0.5,
-        _ => 0.0,
-    }
+/// The definition of an effect's parameter.
+fn definition(effect: &str, parameter: &str) -> Option<&'static Parameter> {
+    effects::find(effect)?.parameter(parameter)
+}
+
+/// Which of an effect's parameters data can show: each, of one that has no definition.
+fn shown(effect: &str) -> Shown {
+    effects::find(effect).map_or(Shown::Each, |def| def.shown)
 }
 
 /// Judges the parameters of one effect.
 pub(super) fn judge(key: &KeyEffect, found: &Found, gauge: f64) -> Vec<Judged> {
-    let mut judged = match key.name.as_str() {
-        _ if key.name != found.name => stand_in(key, found),
-        "slosh" => slosh(key, found, gauge),
-        "friction-anisotropy" => anisotropy(key, found),
-        "joint-stribeck-friction" => levels(key, found, ["c", "s", "v_s"]),
-        "friction-stribeck" => levels(key, found, ["mu_d", "mu_s", "v_s"]),
-        "joint-torque-ripple" | "periodic-disturbance" => periodic(key, found),
-        _ => key.params.iter().filter_map(|(name, value)| generic(key, found, (name, value), gauge)).collect(),
-    };
+    let mut judged = if key.name == found.name { same(key, found, gauge) } else { stand_in(key, found) };
     judged.extend(frames(key, found));
     judged
 }
 
+/// The parameters of the key's effect itself.
+fn same(key: &KeyEffect, found: &Found, gauge: f64) -> Vec<Judged> {
+    let each = || key.params.iter().filter_map(|(name, value)| generic(key, found, (name, value), gauge)).collect();
+    match shown(&key.name) {
+        Shown::Each | Shown::UpToSign { .. } => each(),
+        Shown::SecondMoment { mass, place } => second_moment(key, found, gauge, [mass, place]),
+        Shown::Ellipse { along, across, angle } => ellipse(key, found, [along, across, angle]),
+        Shown::FallingLevel { sliding, rest, speed } => levels(key, found, [sliding, rest, speed]),
+        Shown::Wave { amplitude, phase } => wave(key, found, [amplitude, phase]),
+    }
+}
+
 /// A parameter compared as it stands; `None` where it needs no comparison.
 fn generic(key: &KeyEffect, found: &Found, (name, value): (&str, &ParamValue), gauge: f64) -> Option<Judged> {
-    let scale = gauge.powf(gauge_power(&key.name, name));
+    let definition = definition(&key.name, name);
+    let scale = gauge.powf(definition.map_or(0.0, |parameter| parameter.inertia_power));
     let truth: Vec<f64> = value.numbers()?.iter().map(|v| v * scale).collect();
     let given = match found.params.get(name) {
         Some(value) => value.numbers().unwrap_or_default().to_vec(),
-        None if keeps_nominal(&key.name, name) => return None,
+        None if definition.is_some_and(|parameter| parameter.is_kept) => return None,
         None => vec![0.0; truth.len()],
     };
     let flipped: Vec<f64> = given.iter().map(|v| -v).collect();
     let errors = errors(found, name);
-    let may_flip = name == "coupling";
+    let may_flip = matches!(shown(&key.name), Shown::UpToSign { vector } if vector == name);
     let right = agree(&truth, &given, &errors) || (may_flip && agree(&truth, &flipped, &errors));
     Some(Judged { right, ..judged(key, name, truth, given, errors) })
-}
-
-/// Whether a parameter that is left out keeps a nominal value that is not zero: it is then not judged.
-fn keeps_nominal(effect: &str, parameter: &str) -> bool {
-    matches!(
-        (effect, parameter),
-        ("contact-stiffness", "n")
-            | ("friction-bristle-stiffness", "c_b")
-            | ("mount-compliance", "m")
-            | ("friction-stribeck", "mu_d")
-            | ("friction-dwell-time", "time_constant")
-    )
 }
 
 /// Entry by entry.
@@ -149,13 +141,13 @@ fn errors(found: &Found, name: &str) -> Vec<Option<f64>> {
     found.std_err.get(name).map(StdErr::entries).unwrap_or_default().to_vec()
 }
 
-fn number_of(params: &std::collections::BTreeMap<String, ParamValue>, name: &str) -> f64 {
+fn number_of(params: &BTreeMap<String, ParamValue>, name: &str) -> f64 {
     params.get(name).and_then(ParamValue::number).unwrap_or(f64::NAN)
 }
 
 /// An effect that counts for the key's: its one number against the key's one number; more cannot be compared.
 fn stand_in(key: &KeyEffect, found: &Found) -> Vec<Judged> {
-    let only = |params: &std::collections::BTreeMap<String, ParamValue>| match params.iter().next() {
+    let only = |params: &BTreeMap<String, ParamValue>| match params.iter().next() {
         Some((name, ParamValue::Number(value))) if params.len() == 1 => Some((name.clone(), *value)),
         _ => None,
     };
@@ -182,16 +174,17 @@ fn frames(key: &KeyEffect, found: &Found) -> Vec<Judged> {
     key.params.iter().filter_map(differs).collect()
 }
 
-/// m ‖p‖², frequency and damping.
-fn slosh(key: &KeyEffect, found: &Found, gauge: f64) -> Vec<Judged> {
-    let product = |params: &std::collections::BTreeMap<String, ParamValue>| {
-        let position = params.get("position").and_then(ParamValue::numbers).unwrap_or_default();
-        number_of(params, "mass") * position.iter().map(|p| p * p).sum::<f64>()
+/// m ‖p‖², and the rest as it stands.
+fn second_moment(key: &KeyEffect, found: &Found, gauge: f64, [mass, place]: [&str; 2]) -> Vec<Judged> {
+    let product = |params: &BTreeMap<String, ParamValue>| {
+        let position = params.get(place).and_then(ParamValue::numbers).unwrap_or_default();
+        number_of(params, mass) * position.iter().map(|p| p * p).sum::<f64>()
     };
     let (truth, given) = (gauge * product(&key.params), product(&found.params));
     let right = near(given - truth, truth.abs(), 0.0);
-    let rest = key.params.iter().filter(|(name, _)| !matches!(name.as_str(), "mass" | "position"));
-    let mut all = vec![Judged { right, ..judged(key, "mass ‖position‖²", vec![truth], vec![given], vec![]) }];
+    let rest = key.params.iter().filter(|(name, _)| name.as_str() != mass && name.as_str() != place);
+    let combined = format!("{mass} ‖{place}‖²");
+    let mut all = vec![Judged { right, ..judged(key, &combined, vec![truth], vec![given], vec![]) }];
     all.extend(rest.filter_map(|(name, value)| generic(key, found, (name, value), gauge)));
     all
 }
@@ -210,10 +203,10 @@ fn first_error(found: &Found, name: &str) -> Option<f64> {
 }
 
 /// Whichever way of naming the axes is nearer.
-fn anisotropy(key: &KeyEffect, found: &Found) -> Vec<Judged> {
-    let [mu_1, mu_2, angle] = ["mu_1", "mu_2", "angle"].map(|name| number_of(&found.params, name));
-    let [e_1, e_2, e_angle] = ["mu_1", "mu_2", "angle"].map(|name| first_error(found, name));
-    let truth = ["mu_1", "mu_2", "angle"].map(|name| number_of(&key.params, name));
+fn ellipse(key: &KeyEffect, found: &Found, names: [&str; 3]) -> Vec<Judged> {
+    let [mu_1, mu_2, angle] = names.map(|name| number_of(&found.params, name));
+    let [e_1, e_2, e_angle] = names.map(|name| first_error(found, name));
+    let truth = names.map(|name| number_of(&key.params, name));
     let off = |angle: f64| turn(truth[2], angle, PI);
     let is_exchanged = off(angle + FRAC_PI_2).abs() < off(angle).abs();
     let (levels, level_errors, off) = match is_exchanged {
@@ -223,12 +216,11 @@ fn anisotropy(key: &KeyEffect, found: &Found) -> Vec<Judged> {
     let mut all: Vec<Judged> = (0..2)
         .map(|i| {
             let right = near(levels[i] - truth[i], truth[i].abs(), level_errors[i].unwrap_or(0.0));
-            let name = ["mu_1", "mu_2"][i];
-            Judged { right, ..judged(key, name, vec![truth[i]], vec![levels[i]], vec![level_errors[i]]) }
+            Judged { right, ..judged(key, names[i], vec![truth[i]], vec![levels[i]], vec![level_errors[i]]) }
         })
         .collect();
     let right = angle_is_near(off, e_angle);
-    all.push(Judged { right, ..judged(key, "angle", vec![truth[2]], vec![truth[2] + off], vec![e_angle]) });
+    all.push(Judged { right, ..judged(key, names[2], vec![truth[2]], vec![truth[2] + off], vec![e_angle]) });
     all
 }
 
@@ -239,7 +231,7 @@ fn levels(key: &KeyEffect, found: &Found, [sliding, rest, speed]: [&str; 3]) -> 
     if all.iter().all(|j| j.right) {
         return all;
     }
-    let level = |params: &std::collections::BTreeMap<String, ParamValue>, v: f64| {
+    let level = |params: &BTreeMap<String, ParamValue>, v: f64| {
         let [c, s, v_s] = [sliding, rest, speed].map(|name| number_of(params, name));
         c + (s - c) * (-(v / v_s).powi(2)).exp()
     };
@@ -254,24 +246,24 @@ fn levels(key: &KeyEffect, found: &Found, [sliding, rest, speed]: [&str; 3]) -> 
 }
 
 /// Amplitude and phase together, the rest as it stands.
-fn periodic(key: &KeyEffect, found: &Found) -> Vec<Judged> {
-    let rest = key.params.iter().filter(|(name, _)| !matches!(name.as_str(), "amplitude" | "phase"));
+fn wave(key: &KeyEffect, found: &Found, [amplitude, phase]: [&str; 2]) -> Vec<Judged> {
+    let rest = key.params.iter().filter(|(name, _)| name.as_str() != amplitude && name.as_str() != phase);
     let mut all: Vec<Judged> = rest.filter_map(|(name, value)| generic(key, found, (name, value), 1.0)).collect();
-    let list = |params: &std::collections::BTreeMap<String, ParamValue>| {
-        params.get("amplitude").and_then(ParamValue::numbers).unwrap_or_default().to_vec()
+    let list = |params: &BTreeMap<String, ParamValue>| {
+        params.get(amplitude).and_then(ParamValue::numbers).unwrap_or_default().to_vec()
     };
     let (truth, given) = (list(&key.params), list(&found.params));
     let is_opposite = truth.iter().zip(&given).map(|(a, b)| a * b).sum::<f64>() < 0.0;
     let (sign, shift) = if is_opposite { (-1.0, PI) } else { (1.0, 0.0) };
     let given: Vec<f64> = given.iter().map(|a| sign * a).collect();
-    let amplitude_errors = errors(found, "amplitude");
+    let amplitude_errors = errors(found, amplitude);
     let right = agree(&truth, &given, &amplitude_errors);
-    all.push(Judged { right, ..judged(key, "amplitude", truth, given, amplitude_errors) });
-    if let Some(phase) = key.params.get("phase").and_then(ParamValue::number) {
-        let off = turn(phase, number_of(&found.params, "phase") + shift, TAU);
-        let error = first_error(found, "phase");
+    all.push(Judged { right, ..judged(key, amplitude, truth, given, amplitude_errors) });
+    if let Some(truth) = key.params.get(phase).and_then(ParamValue::number) {
+        let off = turn(truth, number_of(&found.params, phase) + shift, TAU);
+        let error = first_error(found, phase);
         let right = angle_is_near(off, error);
-        all.push(Judged { right, ..judged(key, "phase", vec![phase], vec![phase + off], vec![error]) });
+        all.push(Judged { right, ..judged(key, phase, vec![truth], vec![truth + off], vec![error]) });
     }
     all
 }

@@ -162,8 +162,8 @@ fn parameter_at(scenario: &scenario::Scenario, at: &str) -> Option<String> {
 
 /// Every parameter of every effect, at every kind of place.
 fn parameters_of_effects() -> impl Iterator<Item = String> {
-    scenario::effects::catalogue().flat_map(|entry| {
-        let places = entry.places.iter().flat_map(move |place| entry.parameters.iter().map(move |p| (place, p)));
-        places.map(move |(place, p)| parameter(entry.name.text(), place.text(), p.name))
+    scenario::effects::catalogue().flat_map(|effect| {
+        let places = effect.places.iter().flat_map(move |place| effect.parameters.iter().map(move |p| (place, p)));
+        places.map(move |(place, p)| parameter(effect.name, place.text(), p.name))
     })
 }

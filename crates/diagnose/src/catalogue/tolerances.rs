@@ -6,7 +6,7 @@
 use super::hypotheses;
 use crate::facts::Facts;
 use crate::fit::EffectSet;
-use crate::hypothesis::{Coordinate, Hypothesis};
+use crate::hypothesis::Hypothesis;
 use scenario::spec::Tolerance;
 
 /// Standard deviations at which a number leaves its tolerance.
@@ -25,21 +25,7 @@ pub fn within(facts: &Facts, tolerance: &Tolerance) -> EffectSet {
 
 /// The hypothesis with the standard deviations of its coordinates; none where it is exact.
 fn tolerated(mut h: Hypothesis, tolerance: &Tolerance) -> Option<Hypothesis> {
-    let share = |share: f64, c: &Coordinate| share * c.neutral.abs();
-    let trace = || h.coordinates.iter().take(3).map(|c| c.neutral).sum::<f64>() / 3.0;
-    let sigma: Vec<f64> = match h.name {
-        "body-mass" => h.coordinates.iter().map(|c| share(tolerance.mass, c)).collect(),
-        "body-com" => vec![tolerance.com_m; 3],
-        "body-inertia" => vec![tolerance.inertia * trace(); 6],
-        "actuator-gain" => vec![tolerance.gain],
-        // The logarithm of the stiffness; the exponent is the law's.
-        "contact-stiffness" => vec![tolerance.contact_stiffness, 0.0],
-        "contact-damping" => h.coordinates.iter().map(|c| share(tolerance.contact_damping, c)).collect(),
-        "friction-coefficient" => h.coordinates.iter().map(|c| share(tolerance.friction, c)).collect(),
-        "sensor-misalignment" => vec![tolerance.mount_deg.to_radians(); 3],
-        "sensor-delay" => vec![tolerance.clock_s],
-        _ => return None,
-    };
+    let sigma = (h.def.identify.tolerance?)(tolerance, &h.coordinates);
     // All thrusters together have no number of their own.
     if sigma.iter().all(|s| *s <= 0.0) || h.place.ends_with('*') {
         return None;

@@ -1,8 +1,8 @@
 //! `[[effect]]` entries → edits of the robots, of the parts of the world, and effects of the simulation.
 //!
-//! Three passes: [`check`] holds every entry against the catalogue; [`edit_robots`] changes masses before the trees are
-//! built; [`apply`] changes everything else once shapes, actuators and mechanisms stand. One match over the names says
-//! which family an effect belongs to; each family is a file.
+//! Three passes: [`check`] holds every entry against its definition; [`edit_robots`] changes masses before the trees are
+//! built; [`apply`] changes everything else once shapes, actuators and mechanisms stand. What an entry becomes is the business
+//! of its definition ([`Build`]); where in the world it lands is that of the files here.
 
 mod body;
 mod contact;
@@ -13,18 +13,19 @@ mod line;
 mod mount;
 mod places;
 
-pub(super) use entry::Entry;
+pub(crate) use entry::Entry;
+pub(crate) use mount::{Tip, add_mount};
 
 pub(super) use body::{NominalComs, nominal_coms};
 
 use super::actuators::ActuatorTable;
 use super::faults::Faults;
-use crate::effects::{EffectName, PlaceKind};
+use crate::effects::Build;
 use multibody::RobotDescription;
 use sim::{Environment, Mechanism, PairLaw, ShapeSpec, VehicleSpec};
 
 /// The parts of a world that effects may change, before it is built.
-pub(super) struct Parts {
+pub(crate) struct Parts {
     pub(super) vehicles: Vec<VehicleSpec>,
     pub(super) nominal_coms: NominalComs,
     pub(super) table: ActuatorTable,
@@ -36,95 +37,37 @@ pub(super) struct Parts {
     pub(super) effects: Vec<sim::Effect>,
 }
 
-/// What an effect is built by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Family {
-    /// More inertia of a joint: before a gear takes it.
-    Armature,
-    Joint,
-    Line,
-    Inertia,
-    Body,
-    Contact,
-    Sensor,
-    /// A diagnosis, no model.
-    None,
+/// The robots of a scenario before their trees are built.
+pub(super) struct Robots<'a> {
+    /// Names of the vehicles.
+    pub(super) names: &'a [&'a str],
+    pub(super) descriptions: &'a mut [RobotDescription],
+    /// Centres of mass as the files have them.
+    pub(super) nominal_coms: &'a NominalComs,
 }
 
-/// The family of an effect at a kind of place.
-fn family(name: EffectName, place: PlaceKind) -> Family {
-    use EffectName as N;
-    match name {
-        N::JointArmature => Family::Armature,
-        N::JointViscousFriction
-        | N::JointCoulombFriction
-        | N::JointStribeckFriction
-        | N::JointFrictionAsymmetry
-        | N::JointViscousAsymmetry
-        | N::JointQuadraticFriction
-        | N::JointOffset
-        | N::JointBacklash
-        | N::JointElasticity
-        | N::JointTorqueRipple
-        | N::JointCableStiffness => Family::Joint,
-        N::PeriodicDisturbance if place == PlaceKind::Joint => Family::Joint,
-        N::ActuatorGain | N::ActuatorDelay | N::ActuatorLag | N::ActuatorSaturation | N::ActuatorMisalignment => {
-            Family::Line
-        }
-        N::Payload | N::BodyMass | N::BodyCom | N::BodyInertia => Family::Inertia,
-        N::ConstantForce
-        | N::ConstantTorque
-        | N::Tilt
-        | N::LinearDrag
-        | N::QuadraticDrag
-        | N::AngularDamping
-        | N::InternalDissipation
-        | N::GravityGradient
-        | N::TetherStiffness
-        | N::Slosh
-        | N::FlexibleAppendage
-        | N::PeriodicDisturbance => Family::Body,
-        N::ContactStiffness
-        | N::ContactDamping
-        | N::FrictionCoefficient
-        | N::FrictionStribeck
-        | N::FrictionBristleStiffness
-        | N::FrictionViscous
-        | N::FrictionAnisotropy
-        | N::FrictionDwellTime
-        | N::Adhesion
-        | N::ContactGeometryOffset
-        | N::MountCompliance => Family::Contact,
-        N::SensorBias | N::SensorScale | N::SensorDelay | N::SensorMisalignment => Family::Sensor,
-        N::Unknown => Family::None,
-    }
-}
-
-/// Every entry of the file, held against the catalogue; those at fault are left out and told.
+/// Every entry of the file, held against its definition; those at fault are left out and told.
 pub(super) fn check<'a>(scenario: &'a crate::spec::Scenario, faults: &mut Faults<'_>) -> Vec<Entry<'a>> {
     let all = scenario.effects.iter().enumerate();
     all.filter_map(|(i, effect)| Entry::check(i, effect, faults)).collect()
 }
 
-/// Changes masses, centres of mass and inertias, before the trees are built.
-pub(super) fn edit_robots(
-    plan: &[Entry<'_>],
-    (names, robots): (&[&str], &mut [RobotDescription]),
-    faults: &mut Faults<'_>,
-) {
-    let coms = nominal_coms(robots);
-    // New values first, then what is added to them: whatever the order in the file.
-    let inertial = plan.iter().filter(|e| family(e.name, e.kind) == Family::Inertia);
-    let (added, set): (Vec<_>, Vec<_>) = inertial.partition(|e| e.name == EffectName::Payload);
-    for entry in set.into_iter().chain(added) {
-        inertia::edit(entry, (names, robots), faults);
+/// Changes masses, centres of mass and inertias, before the trees are built: new values first, then what is added to them,
+/// whatever the order in the file, then what is taken out to move by itself.
+pub(super) fn edit_robots(plan: &[Entry<'_>], robots: &mut Robots<'_>, faults: &mut Faults<'_>) {
+    for entry in plan {
+        if let Build::SetMass(edit) = entry.def.build {
+            inertia::edit(entry, edit, robots, faults);
+        }
     }
     for entry in plan {
-        match family(entry.name, entry.kind) {
-            Family::Inertia => {}
-            Family::Body => body::edit_robots(entry, (names, robots, &coms), faults),
-            Family::Contact => contact::edit_robots(entry, (names, robots), faults),
-            Family::Armature | Family::Joint | Family::Line | Family::Sensor | Family::None => {}
+        if let Build::AddMass(edit) = entry.def.build {
+            inertia::edit(entry, edit, robots, faults);
+        }
+    }
+    for entry in plan {
+        if let Build::Part(part) = entry.def.build {
+            body::take_out(entry, part, robots, faults);
         }
     }
 }
@@ -132,24 +75,37 @@ pub(super) fn edit_robots(
 /// Changes the parts of the world, and adds what acts in it.
 pub(super) fn apply(plan: &[Entry<'_>], parts: &mut Parts, faults: &mut Faults<'_>) {
     // A mount numbers coordinates and bodies anew, before anything is built on them.
-    for entry in plan.iter().filter(|e| e.name == EffectName::MountCompliance) {
-        mount::add(entry, parts, faults);
+    for entry in plan {
+        if let Build::Mount(add) = entry.def.build {
+            add(entry, parts, faults);
+        }
     }
     // A gear takes the whole reflected inertia of its joint, so that comes first.
-    for entry in plan.iter().filter(|e| family(e.name, e.kind) == Family::Armature) {
-        joint::add_armature(entry, parts, faults);
+    for entry in plan {
+        if let Build::Rotor(add) = entry.def.build {
+            joint::edit(entry, add, parts, faults);
+        }
     }
     for entry in plan {
-        match family(entry.name, entry.kind) {
-            Family::Joint => joint::apply(entry, parts, faults),
-            Family::Line => line::apply(entry, parts, faults),
-            Family::Body => body::apply(entry, parts, faults),
-            Family::Contact => contact::apply(entry, parts, faults),
-            Family::None => {
+        match entry.def.build {
+            Build::Gear(of) => joint::add_gears(entry, of, parts, faults),
+            Build::Effort(of) => joint::add_efforts(entry, |_| Some(of(entry)), parts, faults),
+            Build::EffortOrLoad { effort, load } => match entry.is_at_joint() {
+                true => joint::add_efforts(entry, |faults| effort(entry, faults), parts, faults),
+                false => body::add_loads(entry, |faults| load(entry, faults), parts, faults),
+            },
+            Build::Command(of) => line::add(entry, of, parts, faults),
+            Build::ThrustAxis(turned) => line::turn_thrusters(entry, turned, parts, faults),
+            Build::Load(of) => body::add_loads(entry, |_| Some(of(entry)), parts, faults),
+            Build::Part(part) => body::add_parts(entry, part, parts, faults),
+            Build::Acceleration(of) => body::add_acceleration(entry, of(entry), parts),
+            Build::Pair(edit) => contact::edit_laws(entry, edit, parts, faults),
+            Build::Pose(displace) => contact::displace_parts(entry, displace, parts, faults),
+            Build::NoModel => {
                 entry.fault(faults, "is what a diagnosis says of physics without a model; remove the entry")
             }
-            // Faults of sensors change no world, but what is read of it: `measure` and `sensors`.
-            Family::Armature | Family::Inertia | Family::Sensor => {}
+            // Stages before this one; and faults of sensors change no world, but what is read of it: `measure` and `sensors`.
+            Build::SetMass(_) | Build::AddMass(_) | Build::Rotor(_) | Build::Mount(_) | Build::Sensor(_) => {}
         }
     }
 }

@@ -22,6 +22,7 @@ mod vehicles;
 pub(crate) use actuators::ActuatorTable;
 pub use docking::docking_visuals;
 pub use drives::DriveChannel;
+pub(crate) use effects::{Entry, Parts, Tip, add_mount};
 pub(crate) use faults::Faults;
 pub(crate) use kinematics::{calc_error, halves, solve_pose};
 pub use shapes::shape_of_geometry;
@@ -167,8 +168,7 @@ fn refuse_what_is_not_simulated(scenario: &Scenario, faults: &mut Faults<'_>) {
 
 /// Every sensor measures something, and every fault of a sensor is one that it can have.
 fn check_sensors(scenario: &Scenario, model: &Model, faults: &mut Faults<'_>) {
-    let of_sensor = |(_, e): &(usize, &spec::Effect)| e.name.starts_with("sensor-");
-    for (i, effect) in scenario.effects.iter().enumerate().filter(of_sensor) {
+    for (i, effect) in scenario.effects.iter().enumerate() {
         if let Some(fault) = crate::measure::find_fault(scenario, model, effect) {
             faults.add(&format!("effect[{i}].place"), fault);
         }

@@ -50,7 +50,8 @@ pub(super) fn load(scenario: &Scenario, plan: &[Entry<'_>], stock: &Stock, fault
     let (mut robots, bases): (Vec<_>, Vec<_>) = loaded.into_iter().unzip();
     let names: Vec<&str> = scenario.vehicles.iter().map(|v| v.name.as_str()).collect();
     let nominal_coms = effects::nominal_coms(&robots);
-    effects::edit_robots(plan, (&names, &mut robots), faults);
+    let mut edited = effects::Robots { names: &names, descriptions: &mut robots, nominal_coms: &nominal_coms };
+    effects::edit_robots(plan, &mut edited, faults);
     let spec = |(vehicle, (robot, base)): (&Vehicle, (&RobotDescription, sim::Base))| VehicleSpec {
         name: vehicle.name.clone(),
         tree: Tree::from_description(robot),

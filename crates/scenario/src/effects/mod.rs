@@ -1,211 +1,174 @@
-//! The vocabulary of effects: which there are, where each may act, and what its parameters are.
+//! Effects: physics beyond the nominal model. One file defines an effect, or a small family; one list names them all.
 //!
-//! Names, places, parameters and conventions are those of the recordings' table of effects; values are SI, without suffix.
-//! At its neutral parameters an effect changes nothing: [`Neutral`] says what they are.
+//! A definition ([`EffectDef`]) says all that is to be said of an effect but its law, which stands in `sim`: its name, where it may act, its
+//! parameters with units and ranges, its words for a reader, equation and source, how an entry of a scenario is built, and how a diagnosis looks for
+//! it. The scenario's checks, the JSON schema, the build, the diagnosis with its report, the score and the guide's page read it here.
+//! To add one: its file, its place in [`ALL`], and its law in `sim`. What is missing from it does not compile.
+//!
+//! Values are SI, without suffix. At its neutral parameters an effect changes nothing: [`Neutral`] says what they are.
 
-mod table;
+mod assembly;
+pub mod candidate;
+mod definition;
+pub mod facts;
+pub mod identify;
+mod parameter;
+pub mod reference;
+mod unit;
 
-use crate::spelling::hint_for_name;
-use std::fmt;
+mod actuator_delay;
+mod actuator_gain;
+mod actuator_lag;
+mod actuator_misalignment;
+mod actuator_saturation;
+mod body_inertial;
+mod constant_load;
+mod contact;
+mod contact_geometry_offset;
+mod contact_normal;
+mod drag;
+mod flexible_appendage;
+mod friction_anisotropy;
+mod friction_bristle_stiffness;
+mod friction_coefficient;
+mod friction_dwell_time;
+mod friction_stribeck;
+mod friction_viscous;
+mod gravity_gradient;
+mod internal_dissipation;
+mod joint;
+mod joint_armature;
+mod joint_cable_stiffness;
+mod joint_dry_friction;
+mod joint_gear;
+mod joint_offset;
+mod joint_torque_ripple;
+mod joint_viscous_friction;
+mod mount_compliance;
+mod payload;
+mod periodic_disturbance;
+mod sensor_delay;
+mod sensor_misalignment;
+mod sensor_value;
+mod slosh;
+mod tether_stiffness;
+mod tilt;
+mod unknown;
 
-macro_rules! names {
-    ($($variant:ident = $text:literal, $doc:literal;)*) => {
-        /// The effects, by name.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum EffectName {
-            $(#[doc = $doc] $variant,)*
-        }
+pub use actuator_delay::ACTUATOR_DELAY;
+pub use actuator_gain::ACTUATOR_GAIN;
+pub use actuator_lag::ACTUATOR_LAG;
+pub use actuator_misalignment::ACTUATOR_MISALIGNMENT;
+pub use actuator_saturation::ACTUATOR_SATURATION;
+pub use body_inertial::{BODY_COM, BODY_INERTIA, BODY_MASS};
+pub use constant_load::{CONSTANT_FORCE, CONSTANT_TORQUE};
+pub use contact_geometry_offset::CONTACT_GEOMETRY_OFFSET;
+pub use contact_normal::{ADHESION, CONTACT_DAMPING, CONTACT_STIFFNESS};
+pub use definition::{Corrects, EffectDef, PlaceKind, Shown};
+pub use drag::{ANGULAR_DAMPING, LINEAR_DRAG, QUADRATIC_DRAG};
+pub use flexible_appendage::FLEXIBLE_APPENDAGE;
+pub use friction_anisotropy::FRICTION_ANISOTROPY;
+pub use friction_bristle_stiffness::FRICTION_BRISTLE_STIFFNESS;
+pub use friction_coefficient::FRICTION_COEFFICIENT;
+pub use friction_dwell_time::FRICTION_DWELL_TIME;
+pub use friction_stribeck::FRICTION_STRIBECK;
+pub use friction_viscous::FRICTION_VISCOUS;
+pub use gravity_gradient::GRAVITY_GRADIENT;
+pub use internal_dissipation::INTERNAL_DISSIPATION;
+pub use joint_armature::JOINT_ARMATURE;
+pub use joint_cable_stiffness::JOINT_CABLE_STIFFNESS;
+pub use joint_dry_friction::{JOINT_COULOMB_FRICTION, JOINT_FRICTION_ASYMMETRY, JOINT_STRIBECK_FRICTION};
+pub use joint_gear::{JOINT_BACKLASH, JOINT_ELASTICITY};
+pub use joint_offset::JOINT_OFFSET;
+pub use joint_torque_ripple::JOINT_TORQUE_RIPPLE;
+pub use joint_viscous_friction::{JOINT_QUADRATIC_FRICTION, JOINT_VISCOUS_ASYMMETRY, JOINT_VISCOUS_FRICTION};
+pub use mount_compliance::MOUNT_COMPLIANCE;
+pub use parameter::{Neutral, Parameter, Shape};
+pub use payload::PAYLOAD;
+pub use periodic_disturbance::PERIODIC_DISTURBANCE;
+pub use sensor_delay::SENSOR_DELAY;
+pub use sensor_misalignment::SENSOR_MISALIGNMENT;
+pub use sensor_value::{SENSOR_BIAS, SENSOR_SCALE};
+pub use slosh::SLOSH;
+pub use tether_stiffness::TETHER_STIFFNESS;
+pub use tilt::TILT;
+pub use unit::Unit;
+pub use unknown::UNKNOWN;
 
-        impl EffectName {
-            /// All of them, in the order of the table.
-            pub const ALL: &[Self] = &[$(Self::$variant),*];
+pub(crate) use assembly::{Build, EditMass, GearSpec, PartBuild, SensorBuild};
 
-            /// The name as it is written.
-            pub fn text(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $text,)*
-                }
-            }
+// What a definition's file needs of the others.
+use crate::build::{Entry, Faults};
+use crate::spec::Tolerance;
+use candidate::{Along, Candidate, Coordinate, Encoding, ScreenPoint, dyad_axes, log_grid};
+use facts::{ActuatorFact, BodyFact, ContactFact, JointFact, SensorFact, Survey};
+use identify::{Alternative, Candidates, Concerns, Identify, Minima, Start, Tier};
+use sim::Grain;
 
-            /// What it adds to the model, in a few words.
-            pub fn meaning(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $doc,)*
-                }
-            }
-        }
-    };
+/// All of them. At a place a diagnosis asks them in this order.
+pub static ALL: [&EffectDef; 49] = [
+    &JOINT_VISCOUS_FRICTION,
+    &JOINT_COULOMB_FRICTION,
+    &JOINT_STRIBECK_FRICTION,
+    &JOINT_FRICTION_ASYMMETRY,
+    &JOINT_VISCOUS_ASYMMETRY,
+    &JOINT_QUADRATIC_FRICTION,
+    &JOINT_OFFSET,
+    &JOINT_CABLE_STIFFNESS,
+    &JOINT_ELASTICITY,
+    &JOINT_BACKLASH,
+    &JOINT_TORQUE_RIPPLE,
+    &JOINT_ARMATURE,
+    &ACTUATOR_GAIN,
+    &ACTUATOR_DELAY,
+    &ACTUATOR_LAG,
+    &ACTUATOR_SATURATION,
+    &ACTUATOR_MISALIGNMENT,
+    &BODY_MASS,
+    &BODY_COM,
+    &BODY_INERTIA,
+    &PAYLOAD,
+    &CONSTANT_FORCE,
+    &LINEAR_DRAG,
+    &QUADRATIC_DRAG,
+    &TETHER_STIFFNESS,
+    &CONSTANT_TORQUE,
+    &ANGULAR_DAMPING,
+    &INTERNAL_DISSIPATION,
+    &GRAVITY_GRADIENT,
+    &SLOSH,
+    &FLEXIBLE_APPENDAGE,
+    &PERIODIC_DISTURBANCE,
+    &TILT,
+    &CONTACT_STIFFNESS,
+    &CONTACT_DAMPING,
+    &ADHESION,
+    &CONTACT_GEOMETRY_OFFSET,
+    &MOUNT_COMPLIANCE,
+    &FRICTION_COEFFICIENT,
+    &FRICTION_STRIBECK,
+    &FRICTION_BRISTLE_STIFFNESS,
+    &FRICTION_VISCOUS,
+    &FRICTION_ANISOTROPY,
+    &FRICTION_DWELL_TIME,
+    &SENSOR_BIAS,
+    &SENSOR_SCALE,
+    &SENSOR_MISALIGNMENT,
+    &SENSOR_DELAY,
+    &UNKNOWN,
+];
+
+/// The effect of that name.
+pub fn find(name: &str) -> Option<&'static EffectDef> {
+    catalogue().find(|effect| effect.name == name)
 }
 
-names! {
-    JointViscousFriction = "joint-viscous-friction", "Friction of a joint that grows with its rate.";
-    JointCoulombFriction = "joint-coulomb-friction", "Dry friction of a joint.";
-    JointStribeckFriction = "joint-stribeck-friction", "Dry friction of a joint, higher at rest than in motion.";
-    JointFrictionAsymmetry = "joint-friction-asymmetry", "Dry friction of a joint that differs by direction.";
-    JointViscousAsymmetry = "joint-viscous-asymmetry", "Viscous friction of a joint that differs by direction.";
-    JointQuadraticFriction = "joint-quadratic-friction", "Friction of a joint that grows with the square of its rate.";
-    JointOffset = "joint-offset", "A constant effort at a joint.";
-    JointBacklash = "joint-backlash", "Play between motor side and link side.";
-    JointElasticity = "joint-elasticity", "A spring between motor side and link side.";
-    JointTorqueRipple = "joint-torque-ripple", "A torque periodic in the joint's position.";
-    JointCableStiffness = "joint-cable-stiffness", "A spring to a rest position of the joint.";
-    JointArmature = "joint-armature", "More reflected rotor inertia.";
-    ActuatorGain = "actuator-gain", "Delivered effort over commanded effort.";
-    ActuatorDelay = "actuator-delay", "Commands act later.";
-    ActuatorLag = "actuator-lag", "A first-order lag between command and output.";
-    ActuatorSaturation = "actuator-saturation", "A bound of the output.";
-    ActuatorMisalignment = "actuator-misalignment", "A thrust axis that is tilted.";
-    Payload = "payload", "A point mass fixed to a link.";
-    BodyMass = "body-mass", "Another mass of a body.";
-    BodyCom = "body-com", "Another centre of mass of a body.";
-    BodyInertia = "body-inertia", "Another inertia of a body.";
-    ConstantForce = "constant-force", "A constant force on a body.";
-    ConstantTorque = "constant-torque", "A constant torque on a body.";
-    Tilt = "tilt", "A constant acceleration of everything.";
-    LinearDrag = "linear-drag", "Drag proportional to speed.";
-    QuadraticDrag = "quadratic-drag", "Drag proportional to the square of speed.";
-    AngularDamping = "angular-damping", "A torque against angular velocity.";
-    InternalDissipation = "internal-dissipation", "An inner sphere that turns in a viscous fluid.";
-    GravityGradient = "gravity-gradient", "The tidal torque in orbit.";
-    TetherStiffness = "tether-stiffness", "A spring and damper to an anchor.";
-    Slosh = "slosh", "A mass on a spring in a tank.";
-    FlexibleAppendage = "flexible-appendage", "A lightly damped mode of bending.";
-    PeriodicDisturbance = "periodic-disturbance", "A force or torque at a fixed frequency.";
-    ContactStiffness = "contact-stiffness", "Another stiffness of a contact.";
-    ContactDamping = "contact-damping", "Another damping of a contact.";
-    FrictionCoefficient = "friction-coefficient", "Another sliding level of friction.";
-    FrictionStribeck = "friction-stribeck", "Friction that is higher at rest than in motion.";
-    FrictionBristleStiffness = "friction-bristle-stiffness", "Another stiffness before sliding.";
-    FrictionViscous = "friction-viscous", "Friction that grows with sliding speed.";
-    FrictionAnisotropy = "friction-anisotropy", "Friction that depends on direction.";
-    FrictionDwellTime = "friction-dwell-time", "Breakaway that grows with time at rest.";
-    Adhesion = "adhesion", "A force that resists parting.";
-    ContactGeometryOffset = "contact-geometry-offset", "A misaligned contact part.";
-    MountCompliance = "mount-compliance", "An elastic mount behind a contact part.";
-    SensorBias = "sensor-bias", "A constant added to a reading.";
-    SensorScale = "sensor-scale", "A factor on a reading.";
-    SensorDelay = "sensor-delay", "Readings that are old.";
-    SensorMisalignment = "sensor-misalignment", "A sensor that is turned.";
-    Unknown = "unknown", "Significant, and none of the others; a diagnosis, not a model.";
+/// All effects, in the order of [`ALL`].
+pub fn catalogue() -> impl Iterator<Item = &'static EffectDef> + Clone {
+    ALL.iter().copied()
 }
 
-impl EffectName {
-    /// The effect of that name.
-    pub fn parse(text: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|name| name.text() == text)
-    }
-
-    /// Continues the sentence that a name is unknown: the nearest one, or all.
-    pub fn hint(text: &str) -> String {
-        hint_for_name(text, Self::ALL.iter().map(|name| name.text()))
-    }
-
-    /// Where it may act and what its parameters are.
-    pub fn entry(self) -> Entry {
-        table::entry(self)
-    }
-}
-
-impl fmt::Display for EffectName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.text())
-    }
-}
-
-/// The kinds of places.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PlaceKind {
-    /// `joint:[vehicle/]name`.
-    Joint,
-    /// `link:[vehicle/]name`.
-    Link,
-    /// `body:[vehicle/]name`, any link of a URDF.
-    Body,
-    /// `contact:a/b`.
-    Contact,
-    /// `actuator:name`, globs allowed.
-    Actuator,
-    /// `sensor:` and a prefix of channels.
-    Sensor,
-    /// `world`.
-    World,
-}
-
-impl PlaceKind {
-    /// What stands before the colon.
-    pub fn text(self) -> &'static str {
-        match self {
-            Self::Joint => "joint",
-            Self::Link => "link",
-            Self::Body => "body",
-            Self::Contact => "contact",
-            Self::Actuator => "actuator",
-            Self::Sensor => "sensor",
-            Self::World => "world",
-        }
-    }
-}
-
-/// An effect of the catalogue.
-#[derive(Clone, Copy, Debug)]
-pub struct Entry {
-    /// Its name.
-    pub name: EffectName,
-    /// Where it may act.
-    pub places: &'static [PlaceKind],
-    /// Its parameters.
-    pub parameters: &'static [Parameter],
-}
-
-impl Entry {
-    /// The parameter of that name.
-    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
-        self.parameters.iter().find(|p| p.name == name)
-    }
-}
-
-/// A parameter of an effect.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameter {
-    /// Its key.
-    pub name: &'static str,
-    /// What stands there.
-    pub shape: Shape,
-    /// Where the effect changes nothing.
-    pub neutral: Neutral,
-    /// Whether it must be given; else the neutral value stands for it (the first of a choice, zero for a phase).
-    pub is_required: bool,
-    /// Every number is between these, ends included.
-    pub range: [f64; 2],
-}
-
-/// What stands as a parameter's value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
-    /// One number.
-    Number,
-    /// Three numbers.
-    Vector,
-    /// Six numbers: xx, yy, zz, xy, xz, yz.
-    Tensor,
-    /// One number or three.
-    NumberOrVector,
-    /// One of these words.
-    Choice(&'static [&'static str]),
-}
-
-/// Where an effect changes nothing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Neutral {
-    /// At this value of every entry.
-    Value(f64),
-    /// At the value of the nominal model.
-    Nominal,
-    /// A parameter of shape: another one decides whether the effect is there.
-    Shape,
-}
-
-/// All effects in the order of the table.
-pub fn catalogue() -> impl Iterator<Item = Entry> {
-    EffectName::ALL.iter().map(|name| name.entry())
+/// Those that are models: all but what a diagnosis says when it finds none.
+pub fn models() -> impl Iterator<Item = &'static EffectDef> + Clone {
+    catalogue().filter(|effect| !matches!(effect.build, Build::NoModel))
 }

@@ -23,7 +23,7 @@ mod sensor;
 
 pub use force::{ForceGauge, Mount};
 pub use sensor::SensorModel;
-pub(crate) use sensor::find_fault;
+pub(crate) use sensor::{SensorEntry, find_fault};
 
 use crate::spec::Scenario;
 use sim::{ActuatorKind, DriveAxis, Model, World};

@@ -7,7 +7,8 @@
 //! component faults that component.
 
 use super::resolve::{all_names, synonyms};
-use super::{Gauge, Quantity, Reading};
+use super::{Gauge, Reading};
+use crate::effects::{self, Build, SensorBuild};
 use crate::spec::{Effect, ParamValue, Scenario};
 use crate::spelling::hint_for_name;
 use sim::Model;
@@ -36,7 +37,7 @@ impl SensorModel {
     /// What the effects of a scenario make of the sensor of a quantity (`body.target.angular_velocity`), by whichever of its
     /// names they call it.
     pub fn of(effects: &[Effect], model: &Model, quantity: &str) -> Self {
-        if !effects.iter().any(is_of_sensor) {
+        if !effects.iter().any(|effect| build_of(effect).is_some()) {
             return Self::default();
         }
         Self::of_names(effects, &synonyms(model, quantity))
@@ -44,31 +45,13 @@ impl SensorModel {
 
     fn of_names(effects: &[Effect], names: &[String]) -> Self {
         let mut sensor = Self::default();
-        for effect in effects.iter().filter(|e| is_of_sensor(e)) {
+        for effect in effects {
+            let Some(build) = build_of(effect) else { continue };
             if let Some(part) = part_of_any(&effect.place, names) {
-                sensor.add(effect, part);
+                (build.add)(&mut sensor, &SensorEntry { effect, part });
             }
         }
         sensor
-    }
-
-    fn add(&mut self, effect: &Effect, part: Part) {
-        let on = |k: usize| part == Part::All || part == Part::Component(k);
-        let value = |name: &str| effect.params.get(name).and_then(ParamValue::numbers).unwrap_or_default();
-        let at = |values: &[f64], k: usize| if values.len() == 1 { Some(values[0]) } else { values.get(k).copied() };
-        match effect.name.as_str() {
-            "sensor-bias" => (0..3).filter(|k| on(*k)).for_each(|k| {
-                self.bias[k] += at(value("bias"), k).unwrap_or(0.0);
-            }),
-            "sensor-scale" => (0..3).filter(|k| on(*k)).for_each(|k| {
-                self.scale[k] *= at(value("scale"), k).unwrap_or(1.0);
-            }),
-            "sensor-delay" => self.delay += at(value("delay"), 0).unwrap_or(0.0),
-            "sensor-misalignment" => {
-                self.angle += Vec3::from_fn(|k, _| value("angle").get(k).copied().unwrap_or(0.0));
-            }
-            _ => {}
-        }
     }
 
     /// What the sensor makes of a value; its delay is the caller's business.
@@ -95,6 +78,9 @@ impl SensorModel {
     }
 }
 
+/// What stands before the prefix of channels in the place of a sensor.
+const PREFIX: &str = "sensor:";
+
 /// The part of a quantity that a prefix of channels means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
@@ -102,21 +88,72 @@ enum Part {
     Component(usize),
 }
 
-fn is_of_sensor(effect: &Effect) -> bool {
-    effect.name.starts_with("sensor-")
+/// The effect of a sensor on the part of a quantity that its place means.
+pub(crate) struct SensorEntry<'a> {
+    effect: &'a Effect,
+    part: Part,
+}
+
+impl SensorEntry<'_> {
+    /// The components that it means.
+    pub(crate) fn components(&self) -> impl Iterator<Item = usize> + use<> {
+        let part = self.part;
+        (0..3).filter(move |k| part == Part::All || part == Part::Component(*k))
+    }
+
+    /// The `k`-th number of a parameter that is given; a single number stands for each.
+    pub(crate) fn value(&self, parameter: &str, k: usize) -> Option<f64> {
+        match self.numbers(parameter) {
+            [only] => Some(*only),
+            numbers => numbers.get(k).copied(),
+        }
+    }
+
+    /// The `k`-th number of a vector that is given.
+    pub(crate) fn entry(&self, parameter: &str, k: usize) -> Option<f64> {
+        self.numbers(parameter).get(k).copied()
+    }
+
+    fn numbers(&self, parameter: &str) -> &[f64] {
+        self.effect.params.get(parameter).and_then(ParamValue::numbers).unwrap_or_default()
+    }
+}
+
+/// What an effect makes of a sensor, where it is one of a sensor. Asked for every channel of every model that a search builds: by the place first.
+fn build_of(effect: &Effect) -> Option<SensorBuild> {
+    effect.place.strip_prefix(PREFIX)?;
+    match effects::find(&effect.name)?.build {
+        Build::Sensor(build) => Some(build),
+        Build::SetMass(_)
+        | Build::AddMass(_)
+        | Build::Rotor(_)
+        | Build::Gear(_)
+        | Build::Effort(_)
+        | Build::EffortOrLoad { .. }
+        | Build::Command(_)
+        | Build::ThrustAxis(_)
+        | Build::Load(_)
+        | Build::Part(_)
+        | Build::Acceleration(_)
+        | Build::Pair(_)
+        | Build::Pose(_)
+        | Build::Mount(_)
+        | Build::NoModel => None,
+    }
 }
 
 /// The part that a place, `sensor:` and a prefix, means of a quantity of these names.
 fn part_of_any(place: &str, names: &[String]) -> Option<Part> {
-    let prefix = place.strip_prefix("sensor:")?;
+    let prefix = place.strip_prefix(PREFIX)?;
     names.iter().find_map(|name| part_of(prefix, name))
 }
 
-/// What is wrong with the effect of a sensor: its place means no channel, or none on which it can act.
+/// What is wrong with the effect of a sensor: its place means no channel, or none on which it can act. Nothing is with other effects.
 pub(crate) fn find_fault(scenario: &Scenario, model: &Model, effect: &Effect) -> Option<String> {
+    let build = build_of(effect)?;
     let all = all_names(scenario, model);
     let meant: Vec<&Vec<String>> = all.iter().filter(|names| part_of_any(&effect.place, names).is_some()).collect();
-    let prefix = effect.place.strip_prefix("sensor:").unwrap_or(&effect.place);
+    let prefix = effect.place.strip_prefix(PREFIX).unwrap_or(&effect.place);
     if meant.is_empty() {
         return Some(format!(
             "no channel begins with \"{prefix}\"{}",
@@ -125,16 +162,7 @@ pub(crate) fn find_fault(scenario: &Scenario, model: &Model, effect: &Effect) ->
     }
     let quantity = |names: &&Vec<String>| Gauge::resolve(scenario, model, &names[0]).ok();
     let gauges: Vec<Gauge> = meant.iter().filter_map(quantity).collect();
-    let turns = |g: &Gauge| matches!(g.quantity(), Quantity::Orientation(..));
-    match effect.name.as_str() {
-        "sensor-bias" | "sensor-scale" if gauges.iter().all(turns) => {
-            Some("an orientation has neither bias nor scale; use sensor-misalignment".to_owned())
-        }
-        "sensor-misalignment" if gauges.iter().all(Gauge::is_scalar) => {
-            Some("a single number has no direction; use sensor-bias or sensor-scale".to_owned())
-        }
-        _ => None,
-    }
+    (build.find_fault)(&gauges).map(str::to_owned)
 }
 
 /// A prefix ends where a word of the channel ends: `body.a` is not of `body.ab`.

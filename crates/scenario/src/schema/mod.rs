@@ -4,6 +4,7 @@
 //! and the same value: none of them can know a key that another does not.
 
 mod check;
+mod effects;
 mod number;
 mod refers;
 mod rules;
@@ -26,6 +27,7 @@ pub(crate) fn scenario_schema() -> &'static Value {
         let settings = schemars::generate::SchemaSettings::draft2020_12().with(|s| s.inline_subschemas = true);
         let mut schema = settings.into_generator().into_root_schema_for::<crate::Scenario>().to_value();
         tidy(&mut schema);
+        effects::describe(&mut schema);
         schema
     });
     &SCHEMA

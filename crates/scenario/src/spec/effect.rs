@@ -1,7 +1,7 @@
 //! Effects: physics beyond the nominal model, each with a name, a place and parameters in SI.
 //!
-//! Names and parameters are those of the table of effects; which of them exist and what their neutral values are is
-//! the business of whoever builds them, so the parameters are kept as they stand here.
+//! Which effects exist, where they act and what their parameters are stands in their definitions ([`crate::effects`]); an entry is held
+//! against its definition when it is built, so the parameters are kept as they stand here.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

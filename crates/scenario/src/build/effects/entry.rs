@@ -1,16 +1,16 @@
-//! One `[[effect]]` entry, held against the catalogue: name, kind of place, parameters and their ranges.
+//! One `[[effect]]` entry, held against its definition: name, kind of place, parameters and their ranges.
 
 use crate::build::faults::Faults;
-use crate::effects::{EffectName, Neutral, Parameter, PlaceKind, Shape};
+use crate::effects::{self, EffectDef, Neutral, Parameter, PlaceKind, Shape};
 use crate::spec::{Effect, ParamValue};
 use spatial::Vec3;
 
 /// An effect whose name, kind of place and parameters are sound.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::build) struct Entry<'a> {
+pub(crate) struct Entry<'a> {
     /// Index into the file's effects.
     index: usize,
-    pub(super) name: EffectName,
+    pub(super) def: &'static EffectDef,
     /// Kind of its place.
     pub(super) kind: PlaceKind,
     /// What stands behind the colon.
@@ -22,34 +22,33 @@ impl<'a> Entry<'a> {
     /// The entry, if it is sound; else its faults are told.
     pub(super) fn check(index: usize, spec: &'a Effect, faults: &mut Faults<'_>) -> Option<Self> {
         let key = |k: &str| format!("effect[{index}].{k}");
-        let Some(name) = EffectName::parse(&spec.name) else {
-            let valid = EffectName::ALL.iter().map(|n| n.text());
-            faults.unknown(&key("name"), "effect", &spec.name, valid);
+        let Some(def) = effects::find(&spec.name) else {
+            faults.unknown(&key("name"), "effect", &spec.name, effects::catalogue().map(|e| e.name));
             return None;
         };
-        let places = name.entry().places;
+        let places = def.places;
         let (kind, place) = spec.place.split_once(':').unwrap_or((&spec.place, ""));
         let Some(kind) = places.iter().copied().find(|p| p.text() == kind) else {
             let valid = places.iter().map(|p| p.text()).collect::<Vec<_>>().join(" or ");
-            faults.add(&key("place"), format!("{name} acts at a {valid}, not at \"{}\"", spec.place));
+            faults.add(&key("place"), format!("{def} acts at a {valid}, not at \"{}\"", spec.place));
             return None;
         };
-        let entry = Self { index, name, kind, place, spec };
+        let entry = Self { index, def, kind, place, spec };
         entry.check_parameters(faults).then_some(entry)
     }
 
     fn check_parameters(&self, faults: &mut Faults<'_>) -> bool {
-        let parameters = self.name.entry().parameters;
+        let parameters = self.def.parameters;
         let mut sound = true;
         for name in self.spec.params.keys().filter(|k| !parameters.iter().any(|p| p.name == k.as_str())) {
             let valid = parameters.iter().map(|p| p.name);
-            faults.unknown(&self.key(name), &format!("parameter of {}", self.name), name, valid);
+            faults.unknown(&self.key(name), &format!("parameter of {}", self.def), name, valid);
             sound = false;
         }
         for parameter in parameters {
             let fault = match self.spec.params.get(parameter.name) {
                 Some(value) => find_fault(parameter, value),
-                None if parameter.is_required => Some(format!("is missing: {} needs it", self.name)),
+                None if parameter.is_required => Some(format!("is missing: {} needs it", self.def)),
                 None => None,
             };
             if let Some(fault) = fault {
@@ -61,37 +60,42 @@ impl<'a> Entry<'a> {
     }
 
     /// Path of a parameter or of "place" in the file.
-    pub(super) fn key(&self, name: &str) -> String {
+    pub(crate) fn key(&self, name: &str) -> String {
         format!("effect[{}].{name}", self.index)
     }
 
     /// Complains about the effect at its place.
-    pub(super) fn fault(&self, faults: &mut Faults<'_>, reason: &str) {
-        faults.add(&self.key("place"), format!("{} {reason}", self.name));
+    pub(crate) fn fault(&self, faults: &mut Faults<'_>, reason: &str) {
+        faults.add(&self.key("place"), format!("{} {reason}", self.def));
+    }
+
+    /// Whether it stands at a joint.
+    pub(super) fn is_at_joint(&self) -> bool {
+        self.kind == PlaceKind::Joint
     }
 
     /// For messages of the simulation.
     pub(super) fn title(&self) -> String {
-        format!("{} at {}", self.name, self.spec.place)
+        format!("{} at {}", self.def, self.spec.place)
     }
 
     /// A number; where the file gives none, the neutral value, or zero where there is none.
-    pub(super) fn number(&self, name: &str) -> f64 {
+    pub(crate) fn number(&self, name: &str) -> f64 {
         self.given(name).unwrap_or_else(|| self.neutral(name))
     }
 
     /// Whether the file says anything of a parameter.
-    pub(super) fn is_given(&self, name: &str) -> bool {
-        self.spec.params.contains_key(name)
+    pub(crate) fn is_given(&self, name: &str) -> bool {
+        self.value(name).is_some()
     }
 
     /// A number, where the file gives it.
-    pub(super) fn given(&self, name: &str) -> Option<f64> {
-        self.spec.params.get(name).and_then(ParamValue::number)
+    pub(crate) fn given(&self, name: &str) -> Option<f64> {
+        self.value(name).and_then(ParamValue::number)
     }
 
     /// A vector; one number is along no axis and stands for (x, x, x) of nothing: see [`Entry::numbers`].
-    pub(super) fn vector(&self, name: &str) -> Vec3 {
+    pub(crate) fn vector(&self, name: &str) -> Vec3 {
         match self.numbers(name) {
             Some([x, y, z]) => Vec3::new(*x, *y, *z),
             _ => Vec3::repeat(self.neutral(name)),
@@ -99,24 +103,30 @@ impl<'a> Entry<'a> {
     }
 
     /// The numbers that the file gives.
-    pub(super) fn numbers(&self, name: &str) -> Option<&'a [f64]> {
-        self.spec.params.get(name).and_then(ParamValue::numbers)
+    pub(crate) fn numbers(&self, name: &str) -> Option<&'a [f64]> {
+        self.value(name).and_then(ParamValue::numbers)
     }
 
     /// The word of a choice; its first where the file gives none.
-    pub(super) fn word(&self, name: &str) -> &'a str {
-        let default = match self.name.entry().parameter(name).map(|p| p.shape) {
+    pub(crate) fn word(&self, name: &str) -> &'a str {
+        let default = match self.def.parameter(name).map(|p| p.shape) {
             Some(Shape::Choice([first, ..])) => *first,
             _ => "",
         };
-        match self.spec.params.get(name) {
+        match self.value(name) {
             Some(ParamValue::Text(word)) => word,
             _ => default,
         }
     }
 
+    /// What the file says of a parameter. A definition that asks for one which it does not have is a bug in it.
+    fn value(&self, name: &str) -> Option<&'a ParamValue> {
+        debug_assert!(self.def.parameter(name).is_some(), "{} asks for a parameter {name} and has none", self.def);
+        self.spec.params.get(name)
+    }
+
     fn neutral(&self, name: &str) -> f64 {
-        match self.name.entry().parameter(name).map(|p| p.neutral) {
+        match self.def.parameter(name).map(|p| p.neutral) {
             Some(Neutral::Value(value)) => value,
             _ => 0.0,
         }

@@ -1,38 +1,32 @@
-//! Effects on actuators: gain, delay, lag, saturation, misalignment.
+//! Effects on actuators: what happens to a command on its way, and where a thruster pushes.
 
 use super::places::actuators;
 use super::{Entry, Parts};
 use crate::build::faults::Faults;
-use crate::effects::EffectName;
 use sim::{ActuatorKind, Effect, EffectKind, LineEffect, LineLaw};
-use spatial::{Vec3, exp_rotation};
+use spatial::Vec3;
 
-/// Adds what stands between commands and outputs, and turns thrust axes.
-pub(super) fn apply(entry: &Entry<'_>, parts: &mut Parts, faults: &mut Faults<'_>) {
+/// Adds what stands between commands and outputs.
+pub(super) fn add(entry: &Entry<'_>, of: fn(&Entry<'_>) -> LineLaw, parts: &mut Parts, faults: &mut Faults<'_>) {
     for actuator in actuators(entry, parts, faults) {
-        let law = match entry.name {
-            EffectName::ActuatorGain => LineLaw::Gain(entry.number("gain")),
-            EffectName::ActuatorDelay => LineLaw::Delay(entry.number("delay")),
-            EffectName::ActuatorLag => LineLaw::Lag(entry.number("time_constant")),
-            EffectName::ActuatorSaturation => LineLaw::Saturation(entry.number("limit")),
-            _ => {
-                turn_thruster(entry, actuator, parts, faults);
-                continue;
-            }
-        };
-        parts.effects.push(Effect { name: entry.title(), kind: EffectKind::Line(LineEffect { actuator, law }) });
+        let kind = EffectKind::Line(LineEffect { actuator, law: of(entry) });
+        parts.effects.push(Effect { name: entry.title(), kind });
     }
 }
 
-/// Turns the thrust axis by the rotation vector (0, `angle_y`, `angle_z`) in the axes of the body.
-fn turn_thruster(entry: &Entry<'_>, actuator: usize, parts: &mut Parts, faults: &mut Faults<'_>) {
-    let turn = Vec3::new(0.0, entry.number("angle_y"), entry.number("angle_z"));
-    match &mut parts.table.actuators[actuator].kind {
-        // A turn by nothing may still round.
-        ActuatorKind::Thruster { direction, .. } if turn != Vec3::zeros() => {
-            *direction = exp_rotation(&turn) * *direction;
+/// Turns thrust axes.
+pub(super) fn turn_thrusters(
+    entry: &Entry<'_>,
+    turned: fn(&Entry<'_>, &Vec3) -> Vec3,
+    parts: &mut Parts,
+    faults: &mut Faults<'_>,
+) {
+    for actuator in actuators(entry, parts, faults) {
+        match &mut parts.table.actuators[actuator].kind {
+            ActuatorKind::Thruster { direction, .. } => *direction = turned(entry, direction),
+            ActuatorKind::JointEffort { .. } | ActuatorKind::JointDrive { .. } | ActuatorKind::LatchRelease { .. } => {
+                entry.fault(faults, "turns thrusters; name one")
+            }
         }
-        ActuatorKind::Thruster { .. } => {}
-        _ => entry.fault(faults, "turns thrusters; name one"),
     }
 }

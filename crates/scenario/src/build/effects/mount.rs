@@ -14,15 +14,23 @@ use crate::effects::PlaceKind;
 use sim::{ActuatorKind, Effect, EffectKind, JointEffect, JointLaw};
 use spatial::{Inertia, Mat3, Pose, Vec3, nalgebra};
 
-/// Mass of a tip of which nothing is said, kg: a probe's ball with a piece of its rod.
-const TIP_MASS: f64 = 0.8;
+/// What carries the part: a point on a spring.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tip {
+    /// kg.
+    pub(crate) mass: f64,
+    /// N/m.
+    pub(crate) stiffness: f64,
+    /// N·s/m.
+    pub(crate) damping: f64,
+}
 
 /// Adds the mount that an entry asks for. It numbers coordinates and bodies anew, so it comes before all other effects.
-pub(super) fn add(entry: &Entry<'_>, parts: &mut Parts, faults: &mut Faults<'_>) {
+pub(crate) fn add_mount(entry: &Entry<'_>, parts: &mut Parts, tip: Tip, faults: &mut Faults<'_>) {
     let mut shapes = shapes_of(entry, parts, faults);
     shapes.sort_unstable();
     shapes.dedup();
-    let Some(&first) = shapes.first().filter(|_| entry.number("k").is_finite()) else { return };
+    let Some(&first) = shapes.first().filter(|_| tip.stiffness.is_finite()) else { return };
     let body_of = |shape: usize| {
         let spec = &parts.shapes[shape];
         spec.vehicle.map(|v| (v, parts.vehicles[v].tree.links[spec.link].body))
@@ -30,18 +38,17 @@ pub(super) fn add(entry: &Entry<'_>, parts: &mut Parts, faults: &mut Faults<'_>)
     let Some((vehicle, body)) = body_of(first).filter(|own| shapes.iter().all(|s| body_of(*s) == Some(*own))) else {
         return entry.fault(faults, "needs parts of one body of one vehicle to stand on the mount");
     };
-    let mass = entry.given("m").unwrap_or(TIP_MASS);
-    if mass >= parts.vehicles[vehicle].tree.bodies[body].inertia.mass {
+    if tip.mass >= parts.vehicles[vehicle].tree.bodies[body].inertia.mass {
         return faults.add(&entry.key("m"), "is all of the body's mass or more: the tip is taken out of the body");
     }
     let name = format!("{}_mount", parts.shapes[first].name);
-    let coordinate = hang(parts, (vehicle, body), &shapes, (mass, &name));
+    let coordinate = hang(parts, (vehicle, body), &shapes, (tip.mass, &name));
     for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
         let title = |what: &str| format!("{} ({what} along {axis})", entry.title());
         let law = |law| EffectKind::Joint(JointEffect { coordinate: coordinate + k, law });
-        let spring = JointLaw::Cable { stiffness: entry.number("k"), rest: 0.0 };
+        let spring = JointLaw::Cable { stiffness: tip.stiffness, rest: 0.0 };
         parts.effects.push(Effect { name: title("spring"), kind: law(spring) });
-        let damper = JointLaw::Viscous { damping: entry.number("d") };
+        let damper = JointLaw::Viscous { damping: tip.damping };
         parts.effects.push(Effect { name: title("damper"), kind: law(damper) });
     }
 }

@@ -2,11 +2,11 @@
 //!
 //! `vehicle/name`, or the name alone where it is the only one; globs name all that match.
 
-use super::{Entry, Parts};
+use super::{Entry, Parts, Robots};
 use crate::build::faults::Faults;
 use crate::effects::PlaceKind;
 use crate::glob::{glob_matches, is_glob};
-use multibody::{JointKind, RobotDescription};
+use multibody::JointKind;
 use sim::{ActuatorKind, VehicleSpec};
 
 /// Of candidates named (vehicle, name), those that a text means; faults are told, and none is found then.
@@ -64,16 +64,12 @@ pub(super) fn joints(entry: &Entry<'_>, vehicles: &[VehicleSpec], faults: &mut F
 }
 
 /// The links that a place names: vehicle and link.
-pub(super) fn links(
-    entry: &Entry<'_>,
-    (names, robots): (&[&str], &[RobotDescription]),
-    faults: &mut Faults<'_>,
-) -> Vec<(usize, usize)> {
+pub(super) fn links(entry: &Entry<'_>, robots: &Robots<'_>, faults: &mut Faults<'_>) -> Vec<(usize, usize)> {
     let (mut sites, mut candidates) = (Vec::new(), Vec::new());
-    for (v, robot) in robots.iter().enumerate() {
+    for (v, robot) in robots.descriptions.iter().enumerate() {
         for (l, link) in robot.links.iter().enumerate() {
             sites.push((v, l));
-            candidates.push((names[v], link.name.as_str()));
+            candidates.push((robots.names[v], link.name.as_str()));
         }
     }
     resolve(entry, "link", &candidates, faults).into_iter().map(|i| sites[i]).collect()

@@ -1,0 +1,40 @@
+//! Commands that act later.
+
+use super::*;
+use parameter::{AT_LEAST_ZERO, zero};
+use sim::LineLaw;
+use unit::S;
+
+/// A dead time.
+pub static ACTUATOR_DELAY: EffectDef = EffectDef {
+    name: "actuator-delay",
+    meaning: "Commands act later.",
+    words: "a delay of the command",
+    places: &[PlaceKind::Joint, PlaceKind::Actuator],
+    parameters: &[zero("delay", AT_LEAST_ZERO, S, "time from a command to its action")],
+    equation: "acting command(t) = command(t − delay); the first command acts until its successor's delayed instant.",
+    source: "Held commands, solved exactly; law in `crates/sim/src/effect/line.rs`.",
+    build: Build::Command(|entry| LineLaw::Delay(entry.number("delay"))),
+    identify: Identify {
+        candidates: Candidates::Actuator(candidates),
+        tier: Tier::Exotic,
+        tolerance: None,
+        penalty: None,
+        nested: None,
+        start: Start::Proportional,
+        minima: Minima::One,
+        concerns: Concerns::Motion,
+    },
+    shown: Shown::Each,
+    corrects: Corrects::Nothing,
+};
+
+/// Delay by which it is screened, s.
+const LATE: f64 = 4e-3;
+
+fn candidates(actuator: &ActuatorFact) -> Vec<Candidate> {
+    let coordinates = vec![Coordinate::level("delay", 0.0).within([0.0, 0.5])];
+    let mut late = Candidate::new(actuator.place.clone(), coordinates).screened_at("", &[vec![LATE]]);
+    late.is_expensive = actuator.largest_command == 0.0;
+    vec![late]
+}

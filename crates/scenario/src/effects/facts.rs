@@ -1,0 +1,153 @@
+//! What the nominal model and the recordings offer to a definition that asks where its effect could act: places and nominal numbers.
+
+use crate::measure::Quantity;
+use spatial::{Mat3, Vec3};
+
+/// A joint with one coordinate.
+#[derive(Clone, Debug)]
+pub struct JointFact {
+    /// Its name.
+    pub name: String,
+    /// Index into `v`.
+    pub coordinate: usize,
+    /// Reflected rotor inertia, kg·m² or kg.
+    pub armature: f64,
+    /// Largest command, N·m or N; zero where none was recorded.
+    pub largest_command: f64,
+}
+
+/// An actuator: the drive of a joint, a thruster, or all thrusters together.
+#[derive(Clone, Debug)]
+pub struct ActuatorFact {
+    /// Its place.
+    pub place: String,
+    /// Largest command, N·m or N; zero where commands are only on and off.
+    pub largest_command: f64,
+    /// Whether it pushes along an axis of its own.
+    pub is_thruster: bool,
+}
+
+/// A body: a base that moves, or the link of an arm.
+#[derive(Clone, Debug)]
+pub struct BodyFact {
+    /// Its link.
+    pub name: String,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Centre of mass, link frame, m.
+    pub com: Vec3,
+    /// About the centre of mass, kg·m².
+    pub inertia: Mat3,
+    /// The base's free components; all false for the link of an arm on a fixed base.
+    pub mask: [bool; 6],
+    /// Whether it is a vehicle's base.
+    pub is_base: bool,
+    /// Whether nothing but its own inertia moves it: no thruster, no contact.
+    pub is_torque_free: bool,
+}
+
+/// A contact pair.
+#[derive(Clone, Debug)]
+pub struct ContactFact {
+    /// `probe/drogue`.
+    pub name: String,
+    /// Normal law: stiffness, exponent, dissipation.
+    pub normal: Option<[f64; 3]>,
+    /// Bristle law: level, stiffness, damping.
+    pub bristle: Option<[f64; 3]>,
+    /// Mass of the lighter free body, kg.
+    pub mass: f64,
+    /// Whether both sides can move against each other in space.
+    pub has_normal_motion: bool,
+}
+
+/// A sensor.
+#[derive(Clone, Debug)]
+pub struct SensorFact {
+    /// Channel without component.
+    pub channel: String,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// Components.
+    pub axes: Vec<usize>,
+    /// Noise, its unit.
+    pub sigma: f64,
+}
+
+/// What is around a place.
+#[derive(Clone, Copy, Debug)]
+pub struct Survey<'a> {
+    /// Joints with one coordinate.
+    pub joints: &'a [JointFact],
+    /// Bodies.
+    pub bodies: &'a [BodyFact],
+    /// Contact pairs.
+    pub contacts: &'a [ContactFact],
+    /// Longest run, s.
+    pub duration: f64,
+}
+
+impl JointFact {
+    /// Its place.
+    pub fn place(&self) -> String {
+        format!("joint:{}", self.name)
+    }
+}
+
+impl BodyFact {
+    /// Its place.
+    pub fn place(&self) -> String {
+        format!("body:{}", self.name)
+    }
+
+    /// Axes about which it can turn as a base.
+    pub fn turns(&self) -> &[bool] {
+        &self.mask[..3]
+    }
+
+    /// Axes along which it can move as a base.
+    pub fn slides(&self) -> &[bool] {
+        &self.mask[3..]
+    }
+
+    /// Whether it is a base that can turn about every axis.
+    pub fn tumbles(&self) -> bool {
+        self.is_base && self.turns().iter().all(|m| *m)
+    }
+
+    /// Mean of the principal moments, kg·m².
+    pub fn mean_moment(&self) -> f64 {
+        self.inertia.trace() / 3.0
+    }
+}
+
+impl ContactFact {
+    /// Its place.
+    pub fn place(&self) -> String {
+        format!("contact:{}", self.name)
+    }
+
+    /// The numbers of its normal law, where its parts can part.
+    pub fn moving_normal(&self) -> Option<[f64; 3]> {
+        self.normal.filter(|_| self.has_normal_motion)
+    }
+}
+
+impl SensorFact {
+    /// Its place.
+    pub fn place(&self) -> String {
+        format!("sensor:{}", self.channel)
+    }
+
+    /// Whether it reads an orientation.
+    pub fn is_orientation(&self) -> bool {
+        matches!(self.quantity, Quantity::Orientation(..))
+    }
+}
+
+impl Survey<'_> {
+    /// Whether a body slides under its own weight: a force on it is then a tilt, and drag is viscous friction.
+    pub fn rests(&self, body: &BodyFact) -> bool {
+        self.contacts.iter().any(|c| c.normal.is_none() && (c.mass - body.mass).abs() < 1e-9 * body.mass)
+    }
+}

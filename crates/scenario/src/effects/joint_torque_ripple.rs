@@ -1,0 +1,51 @@
+//! A torque that is periodic in a joint's position: cogging, a gear's teeth.
+
+use super::joint::SMALL;
+use super::*;
+use parameter::{ANY, shape, zero};
+use sim::JointLaw;
+use unit::{EFFORT, NONE, RAD};
+
+/// amplitude sin(order q + phase).
+pub static JOINT_TORQUE_RIPPLE: EffectDef = EffectDef {
+    name: "joint-torque-ripple",
+    meaning: "A torque periodic in the joint's position.",
+    words: "a torque ripple that follows the joint's angle",
+    places: &[PlaceKind::Joint],
+    parameters: &[
+        zero("amplitude", ANY, EFFORT, "amplitude"),
+        shape("order", ANY, NONE, "periods in a turn; where the joint slides 2π over the wavelength, 1/m"),
+        shape("phase", ANY, RAD, "phase at q = 0").optional(),
+    ],
+    equation: "amplitude · sin(order q + phase).",
+    source: "Fourier component of cogging; law in `crates/sim/src/effect/joint.rs`.",
+    build: Build::Effort(|entry| {
+        let number = |name: &str| entry.number(name);
+        JointLaw::Ripple { amplitude: number("amplitude"), order: number("order"), phase: number("phase") }
+    }),
+    identify: Identify {
+        candidates: Candidates::Joint(candidates),
+        tier: Tier::Exotic,
+        tolerance: None,
+        penalty: None,
+        nested: None,
+        start: Start::Mean,
+        minima: Minima::One,
+        concerns: Concerns::Motion,
+    },
+    shown: Shown::Wave { amplitude: "amplitude", phase: "phase" },
+    corrects: Corrects::Nothing,
+};
+
+/// Orders at which a ripple is screened.
+const ORDERS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0];
+
+fn candidates(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
+    let coordinates = vec![
+        Coordinate::free("amplitude", 0.0),
+        Coordinate::free("phase", 0.0),
+        Coordinate::free("order", 1.0).within([0.5, 1000.0]),
+    ];
+    let ripple = Candidate::new(joint.place(), coordinates).encoded(Encoding::Phasor);
+    vec![ripple.screened_on(2, &ORDERS, &Along::each(0..2, SMALL)).expensive()]
+}

@@ -1,0 +1,170 @@
+//! Definitions of effects are whole: what one says in one place it keeps in the others.
+#![allow(clippy::unwrap_used)]
+
+use scenario::effects::candidate::Candidate;
+use scenario::effects::facts::{ActuatorFact, BodyFact, ContactFact, JointFact, SensorFact, Survey};
+use scenario::effects::identify::Tier;
+use scenario::effects::{EffectDef, Shape, Shown, find, models};
+use scenario::measure::Quantity;
+use scenario::spec::Tolerance;
+use spatial::{Mat3, Vec3};
+
+fn joint() -> JointFact {
+    JointFact { name: "hinge".into(), coordinate: 0, armature: 0.2, largest_command: 2.0 }
+}
+
+fn actuators() -> [ActuatorFact; 2] {
+    let fact = |place: &str, largest_command: f64, is_thruster: bool| ActuatorFact {
+        place: place.into(),
+        largest_command,
+        is_thruster,
+    };
+    [fact("joint:hinge", 2.0, false), fact("actuator:jet", 0.0, true)]
+}
+
+/// A base that is pushed, and a link.
+fn bodies() -> [BodyFact; 2] {
+    let base = BodyFact {
+        name: "base".into(),
+        mass: 4.0,
+        com: Vec3::new(0.2, 0.0, 0.0),
+        inertia: Mat3::from_diagonal(&Vec3::new(1.0, 2.0, 2.5)),
+        mask: [true; 6],
+        is_base: true,
+        is_torque_free: false,
+    };
+    let link = BodyFact { name: "link".into(), mask: [false; 6], is_base: false, ..base.clone() };
+    [base, link]
+}
+
+fn contact() -> ContactFact {
+    ContactFact {
+        name: "pad/plate".into(),
+        normal: Some([1e5, 1.5, 0.3]),
+        bristle: Some([0.25, 1e5, 50.0]),
+        mass: 40.0,
+        has_normal_motion: true,
+    }
+}
+
+fn sensors() -> [SensorFact; 2] {
+    let fact = |channel: &str, quantity: Quantity, axes: &[usize]| SensorFact {
+        channel: channel.into(),
+        quantity,
+        axes: axes.to_vec(),
+        sigma: 1e-3,
+    };
+    [
+        fact("body.base.position", Quantity::Position(0, 0), &[0, 1, 2]),
+        fact("joint.hinge.velocity", Quantity::JointVelocity(0), &[0]),
+    ]
+}
+
+/// Candidates on a rig that has a place of every kind.
+fn candidates(effect: &EffectDef) -> Vec<Candidate> {
+    let (joint, bodies, contact) = (joint(), bodies(), contact());
+    let survey = Survey {
+        joints: std::slice::from_ref(&joint),
+        bodies: &bodies,
+        contacts: std::slice::from_ref(&contact),
+        duration: 40.0,
+    };
+    let of = &effect.identify.candidates;
+    let mut all = of.at_joint(&joint, &survey);
+    all.extend(actuators().iter().flat_map(|actuator| of.at_actuator(actuator)));
+    all.extend(bodies.iter().flat_map(|body| of.at_body(body, &survey)));
+    all.extend(of.at_world(&survey));
+    all.extend(of.at_contact(&contact));
+    all.extend(sensors().iter().flat_map(|sensor| of.at_sensor(sensor)));
+    all
+}
+
+/// The parameter of a coordinate, `com[1]`.
+fn parameter(effect: &EffectDef, key: &str) -> bool {
+    effect.parameter(key.split('[').next().unwrap()).is_some()
+}
+
+#[test]
+fn a_rig_with_every_kind_of_place_has_a_candidate_for_every_effect() {
+    for effect in models() {
+        let all = candidates(effect);
+        assert!(!all.is_empty(), "{effect} is looked for nowhere");
+        for candidate in all {
+            let kind = candidate.place.split(':').next().unwrap();
+            assert!(effect.places.iter().any(|p| p.text() == kind), "{effect} cannot be at {}", candidate.place);
+            assert!(!candidate.screens.is_empty(), "{effect} at {} is never screened", candidate.place);
+        }
+    }
+}
+
+#[test]
+fn candidates_are_told_in_parameters_of_their_effect() {
+    for effect in models() {
+        for candidate in candidates(effect) {
+            let n = candidate.coordinates.len();
+            let x = candidate.neutral();
+            let decoded = candidate.encoding.decode(&candidate.coordinates, &x);
+            let fitted = candidate.coordinates.iter().map(|c| c.key).chain(decoded.iter().map(|d| d.0));
+            let words = candidate.constants.iter().map(|c| c.0);
+            for key in fitted.chain(words) {
+                assert!(parameter(effect, key), "{effect} has no parameter {key}");
+            }
+            let inside =
+                |(x, c): (&f64, &scenario::effects::candidate::Coordinate)| (c.bounds[0]..=c.bounds[1]).contains(x);
+            assert!(x.iter().zip(&candidate.coordinates).all(inside), "{effect} begins beyond its bounds");
+            assert!(candidate.held.iter().all(|k| *k < n), "{effect} holds what it does not have");
+            for column in candidate.screens.iter().flat_map(|s| &s.columns) {
+                assert!(column.base.len() == n && column.direction.len() == n && column.step > 0.0, "{effect}");
+            }
+        }
+    }
+}
+
+#[test]
+fn nested_laws_are_effects_with_as_many_coordinates() {
+    for effect in models() {
+        let Some(nested) = effect.identify.nested else { continue };
+        for candidate in candidates(effect) {
+            let x = vec![0.5; candidate.coordinates.len()];
+            for alternative in nested(&candidate.place, &x) {
+                let other = find(alternative.name).unwrap();
+                let fits = |c: &Candidate| c.coordinates.len() == alternative.coordinates.len();
+                assert!(other != effect && candidates(other).iter().any(fits), "{effect} → {other}");
+                assert!(alternative.held.iter().all(|k| *k < alternative.coordinates.len()), "{effect} → {other}");
+            }
+        }
+    }
+}
+
+#[test]
+fn tolerances_have_a_number_for_each_coordinate_and_none_where_all_is_exact() {
+    for effect in models() {
+        let Some(tolerance) = effect.identify.tolerance else { continue };
+        for candidate in candidates(effect) {
+            let exact = tolerance(&Tolerance::default(), &candidate.coordinates);
+            assert_eq!(exact, vec![0.0; candidate.coordinates.len()], "{effect}");
+        }
+    }
+    let nominal = models().filter(|e| e.identify.tier == Tier::Nominal);
+    assert!(nominal.count() >= 7);
+}
+
+#[test]
+fn what_data_show_is_told_in_parameters_of_the_effect() {
+    for effect in models() {
+        let named: Vec<&str> = match effect.shown {
+            Shown::Each => vec![],
+            Shown::UpToSign { vector } => vec![vector],
+            Shown::SecondMoment { mass, place } => vec![mass, place],
+            Shown::Ellipse { along, across, angle } => vec![along, across, angle],
+            Shown::FallingLevel { sliding, rest, speed } => vec![sliding, rest, speed],
+            Shown::Wave { amplitude, phase } => vec![amplitude, phase],
+        };
+        assert!(named.iter().all(|name| effect.parameter(name).is_some()), "{effect}: {named:?}");
+        let choices = effect.parameters.iter().filter(|p| matches!(p.shape, Shape::Choice(_)));
+        assert!(
+            choices.into_iter().all(|p| !p.is_required),
+            "{effect}: the first word of a choice is meant where none is given"
+        );
+    }
+}
