@@ -124,14 +124,17 @@ fn diagnose_in_windows(
     Ok(if merit(&other.0) > merit(&found.0) { other } else { found })
 }
 
-/// How much of the mismatch is explained: all, a share, or nothing.
+/// How much of the mismatch is explained: all, a share (of windows, which may be told to the last while whole runs are not), or nothing.
 fn merit(diagnosis: &Diagnosis) -> f64 {
     match diagnosis.verdict {
         Verdict::NoMismatch | Verdict::Explained => 1.0,
-        Verdict::PartlyExplained => diagnosis.explained_share.as_ref().map_or(0.0, |e| e.share.clamp(0.0, 1.0)),
+        Verdict::PartlyExplained => diagnosis.explained_share.as_ref().map_or(0.0, |e| e.share.clamp(0.0, NOT_ALL)),
         Verdict::Unknown => -1.0,
     }
 }
+
+/// Most that a share counts for where something is left.
+const NOT_ALL: f64 = 0.999_999;
 
 /// What a reader must know of a search that was ended.
 const SPENT: &str = "The search was ended by its limit of work before it had looked at all that promised something; `--effort 4` looks further.";

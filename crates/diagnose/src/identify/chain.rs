@@ -269,3 +269,127 @@ fn scaled(a: &DMatrix<f64>, by: &DVector<f64>) -> DMatrix<f64> {
     out.column_iter_mut().zip(by.iter()).for_each(|(mut column, s)| column *= *s);
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    const STATES: usize = 2;
+    const FORCES: usize = 1;
+    const NUMBERS: usize = 2;
+    const SAMPLES: usize = 3;
+    const INTERVALS: usize = 4;
+
+    /// One interval, sample by sample: (S, F, Y) and the node of it.
+    fn interval(dice: &mut ChaCha8Rng) -> (DMatrix<f64>, Node) {
+        let mut draw = |rows, columns| {
+            DMatrix::from_fn(rows, columns, |_, _| f64::from(dice.next_u32()) / f64::from(u32::MAX) - 0.5)
+        };
+        let rows = draw(SAMPLES, STATES + FORCES + NUMBERS + 1);
+        let (a, b, d) = (draw(STATES, STATES), draw(STATES, FORCES), draw(STATES, NUMBERS + 1));
+        let own = |rows: DMatrix<f64>| rows.tr_mul(&rows);
+        let grams = vec![(0, own(rows.rows(0, 1).into_owned())), (1, own(rows.rows(1, SAMPLES - 1).into_owned()))];
+        (rows, Node { grams, a, b, d })
+    }
+
+    /// The same problem with all unknowns at once: ρ = J z + Y y with z of unit variance; by sample over the factor of its noise.
+    struct Dense {
+        j: DMatrix<f64>,
+        y: DMatrix<f64>,
+    }
+
+    impl Dense {
+        fn new(all: &[(DMatrix<f64>, Node)], prior: Prior<'_>) -> Self {
+            let unknowns = STATES + INTERVALS * FORCES;
+            let mut state = DMatrix::zeros(STATES, unknowns);
+            (0..STATES).for_each(|k| state[(k, k)] = prior.start[k]);
+            let mut offset = DMatrix::zeros(STATES, NUMBERS + 1);
+            let (mut j, mut y) = (DMatrix::zeros(0, unknowns), DMatrix::zeros(0, NUMBERS + 1));
+            for (i, (rows, node)) in all.iter().enumerate() {
+                let mut force = DMatrix::zeros(FORCES, unknowns);
+                force[(0, STATES + i)] = prior.force[0];
+                let s = rows.columns(0, STATES);
+                let mut own_j = s * &state + rows.columns(STATES, FORCES) * &force;
+                let mut own_y = rows.columns(STATES + FORCES, NUMBERS + 1) + s * &offset;
+                for k in 0..SAMPLES {
+                    let factor = prior.noise[usize::from(k > 0)];
+                    own_j.row_mut(k).unscale_mut(factor);
+                    own_y.row_mut(k).unscale_mut(factor);
+                }
+                j = DMatrix::from_fn(j.nrows() + SAMPLES, unknowns, |r, c| {
+                    if r < j.nrows() { j[(r, c)] } else { own_j[(r - j.nrows(), c)] }
+                });
+                y = DMatrix::from_fn(y.nrows() + SAMPLES, NUMBERS + 1, |r, c| {
+                    if r < y.nrows() { y[(r, c)] } else { own_y[(r - y.nrows(), c)] }
+                });
+                offset = &node.a * offset + &node.d;
+                state = &node.a * state + &node.b * force;
+            }
+            Self { j, y }
+        }
+    }
+
+    fn problem() -> Vec<(DMatrix<f64>, Node)> {
+        let mut dice = ChaCha8Rng::seed_from_u64(3);
+        (0..INTERVALS).map(|_| interval(&mut dice)).collect()
+    }
+
+    fn with_prior(check: impl Fn(Prior<'_>)) {
+        let [start, force, noise] = [vec![2.0, 0.5], vec![0.7], vec![1.0, 1.5]].map(DVector::from_vec);
+        check(Prior { start: &start, force: &force, noise: &noise });
+    }
+
+    #[test]
+    fn a_chain_is_the_least_squares_problem_of_all_unknowns_at_once() {
+        let all = problem();
+        let nodes: Vec<Node> = all.iter().map(|a| a.1.clone()).collect();
+        with_prior(|prior| {
+            let Dense { j, y } = Dense::new(&all, prior);
+            let r = DMatrix::identity(j.nrows(), j.nrows()) + &j * j.transpose();
+            let gram = y.tr_mul(&(r.clone().try_inverse().expect("it is positive") * &y));
+            let found = eliminate(&nodes, prior);
+            assert!((&found.gram - &gram).amax() < 1e-12 * gram.amax(), "{} {gram}", found.gram);
+            assert!((found.log_det - r.determinant().ln()).abs() < 1e-12);
+        });
+    }
+
+    #[test]
+    fn smoothed_forces_and_their_variances_are_those_of_the_posterior() {
+        let all = problem();
+        let nodes: Vec<Node> = all.iter().map(|a| a.1.clone()).collect();
+        let theta = DVector::from_vec(vec![0.3, -0.8]);
+        with_prior(|prior| {
+            let Dense { j, y } = Dense::new(&all, prior);
+            let information = DMatrix::identity(j.ncols(), j.ncols()) + j.tr_mul(&j);
+            let covariance = information.try_inverse().expect("it is positive");
+            let z = -(&covariance * j.tr_mul(&(&y * theta.push(1.0))));
+            let found = smooth(&nodes, prior, &theta);
+            for i in 0..INTERVALS {
+                let q = prior.force[0];
+                assert!((found.forces[i][0] - q * z[STATES + i]).abs() < 1e-12);
+                assert!((found.variances[i][0] - q * q * covariance[(STATES + i, STATES + i)]).abs() < 1e-12);
+            }
+            (0..STATES).for_each(|k| assert!((found.states[0][k] - prior.start[k] * z[k]).abs() < 1e-12));
+            // Expected squares of the residuals, channel by channel, units of the noise as given.
+            let residual = &j * &z + &y * theta.push(1.0);
+            let spread = &j * &covariance * j.transpose();
+            let all: f64 = (0..residual.len()).map(|i| residual[i].powi(2) + spread[(i, i)]).sum();
+            let told: f64 = found.squares.iter().flatten().map(|(c, s)| s / prior.noise[*c as usize].powi(2)).sum();
+            assert!((all - told).abs() < 1e-10, "{all} {told}");
+        });
+    }
+
+    #[test]
+    fn without_forces_a_chain_is_one_free_run() {
+        let nodes: Vec<Node> = problem().into_iter().map(|a| a.1).collect();
+        let [start, none, noise] = [vec![2.0, 0.5], vec![0.0], vec![1.0, 1.0]].map(DVector::from_vec);
+        let prior = Prior { start: &start, force: &none, noise: &noise };
+        let found = smooth(&nodes, prior, &DVector::zeros(NUMBERS));
+        for i in 1..INTERVALS {
+            let next = &nodes[i - 1].a * &found.states[i - 1] + nodes[i - 1].d.column(NUMBERS);
+            assert!((&next - &found.states[i]).amax() < 1e-12, "it is continuous");
+        }
+    }
+}

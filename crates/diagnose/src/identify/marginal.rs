@@ -292,3 +292,67 @@ impl Squares {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    const STEP: f64 = 0.1;
+    const INTERVALS: usize = 200;
+    const SAMPLES: usize = 8;
+
+    /// A mass that an unknown force of an interval pushes; its place is read, in units of the noise. The number is a constant force.
+    fn pushed(force: f64, noise: f64, number: f64) -> Chain {
+        let mut dice = ChaCha8Rng::seed_from_u64(11);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut dice) };
+        let (mut links, mut sides) = (Vec::new(), Vec::new());
+        let (mut x, mut v) = (0.0, 0.0);
+        for _ in 0..INTERVALS {
+            let f = force * draw() + number;
+            let at = |k: usize| (k + 1) as f64 / SAMPLES as f64 * STEP;
+            let s = DMatrix::from_fn(SAMPLES, 2, |k, c| SCALE * if c == 0 { 1.0 } else { at(k) });
+            let by_force = DMatrix::from_fn(SAMPLES, 1, |k, _| SCALE * 0.5 * at(k).powi(2));
+            let a = DMatrix::from_row_slice(2, 2, &[1.0, STEP, 0.0, 1.0]);
+            let b = DMatrix::from_column_slice(2, 1, &[0.5 * STEP * STEP, STEP]);
+            // Predicted less measured, about a state at rest.
+            let r: Vec<f64> =
+                (0..SAMPLES).map(|k| -SCALE * (x + v * at(k) + 0.5 * f * at(k).powi(2)) + noise * draw()).collect();
+            let y = DMatrix::from_columns(&[by_force.column(0).into_owned(), DVector::from_vec(r)]);
+            let d = DMatrix::from_columns(&[b.column(0).into_owned(), DVector::zeros(2)]);
+            links.push(Link { s, f: by_force, a, b });
+            sides.push(Side { y, d });
+            (x, v) = (x + v * STEP + 0.5 * f * STEP * STEP, v + f * STEP);
+        }
+        let channels = vec![vec![0; SAMPLES]; INTERVALS];
+        let start = DVector::from_element(2, 10.0);
+        Linear { links: Arc::new(links), sides, channels, start }.chain(&[0])
+    }
+
+    /// Readings per unit of noise.
+    const SCALE: f64 = 1e4;
+
+    fn at_first() -> Spread {
+        Spread { force: DVector::from_element(1, 10.0), noise: DVector::from_element(1, 1.0) }
+    }
+
+    #[test]
+    fn forces_and_noise_come_out_as_large_as_they_are() {
+        let found = estimate(&[pushed(0.3, 2.0, 0.5)], None, &at_first(), 40);
+        // 200 forces: 5 % is one standard deviation; 1,600 readings: 2 %.
+        assert!((found.spread.force[0] / 0.3 - 1.0).abs() < 0.15, "{:?}", found.spread);
+        assert!((found.spread.noise[0] / 2.0 - 1.0).abs() < 0.06, "{:?}", found.spread);
+        let error = found.covariance[(0, 0)].sqrt();
+        assert!((error / (0.3 / 200.0f64.sqrt()) - 1.0).abs() < 0.2, "as of the mean of so many forces: {error}");
+        assert!((found.theta[0] - 0.5).abs() < 3.0 * error, "{}", found.theta[0]);
+    }
+
+    #[test]
+    fn a_run_that_nothing_pushes_has_no_unknown_force() {
+        let found = estimate(&[pushed(0.0, 1.0, 0.5)], None, &at_first(), 40);
+        assert!(found.spread.force[0] < 1e-4, "{:?}", found.spread);
+        assert!((found.theta[0] - 0.5).abs() < 4.0 * found.covariance[(0, 0)].sqrt());
+    }
+}

@@ -56,6 +56,11 @@ impl Pool {
         Ok(Self { hypotheses, entries, variations })
     }
 
+    /// Columns of all entries.
+    pub fn columns(&self) -> usize {
+        self.entries.last().map_or(0, |e| e.columns.end)
+    }
+
     /// The hypothesis of an entry.
     pub fn of(&self, entry: usize) -> &Hypothesis {
         &self.hypotheses[self.entries[entry].hypothesis]
@@ -84,3 +89,23 @@ pub fn price(hypothesis: &Hypothesis, count: usize, many: usize) -> f64 {
 
 /// That physics is missing is held less likely beforehand than that a nominal number is off: odds of ten to one.
 const EXOTIC: f64 = 4.6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::hypotheses;
+    use crate::facts::{Facts, JointFact};
+
+    #[test]
+    fn more_numbers_cost_more_and_a_tolerated_number_costs_nothing() {
+        let joint = JointFact { name: "j".to_owned(), coordinate: 0, armature: 0.0, largest_command: 0.0 };
+        let facts = Facts { joints: vec![joint], duration: 1.0, ..Facts::default() };
+        let all = hypotheses(&facts);
+        let of = |name: &str| all.iter().find(|h| h.name == name).expect("it is in the library");
+        let plain = price(of("joint-viscous-friction"), 1000, 50);
+        assert!((price(of("joint-viscous-asymmetry"), 1000, 50) - plain - 1000f64.ln()).abs() < 1e-12, "by ln N");
+        assert!(price(of("joint-viscous-friction"), 1000, 100) > plain, "by how many were looked at");
+        let within = Hypothesis { tolerance: vec![0.1], ..of("joint-viscous-friction").clone() };
+        assert_eq!(price(&within, 1000, 50), 0.0);
+    }
+}

@@ -10,6 +10,7 @@ use crate::identify::fit::{Fitted, Problem, Reach, ridge_of};
 use crate::identify::marginal::{Spread, estimate, products, sum};
 use crate::screen::Score;
 use crate::standing::told;
+use crate::work::Until;
 
 /// What a search has found.
 #[derive(Clone, Debug)]
@@ -50,6 +51,8 @@ const AT_ONCE: usize = 3;
 const FITTED: usize = 4;
 /// Share of the best promise below which a set is not fitted.
 const PROMISING: f64 = 0.6;
+/// Share of what the nominal model leaves beyond noise that a set may leave for a search to go on.
+const MOST_LEFT: f64 = 0.4;
 /// Iterations of a first fit, and to the end.
 const LOOK: Reach = Reach { iterations: 6, reuse: true };
 const END: Reach = Reach { iterations: 6, reuse: false };
@@ -79,6 +82,9 @@ pub fn search(
         if room == 0 || round > 0 && remainder(problem, &now)?.rise < cheapest {
             break;
         }
+        if problem.stage.work.is_spent(Until::Search) {
+            break;
+        }
         let (pool, grown) = linear_sets(problem, &mut now, all, room.min(AT_ONCE))?;
         if round == 0 {
             (found.shown, found.left) = (shown(&pool, &grown), grown.left);
@@ -87,6 +93,9 @@ pub fn search(
         let mut best: Option<Fitted> = None;
         let mut enough: Vec<Vec<String>> = Vec::new();
         for set in chosen(&grown.sets, now.score) {
+            if problem.stage.work.is_spent(Until::Search) {
+                break;
+            }
             let titles: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
             // What adds to a set that leaves nothing adds nothing.
             if enough.iter().any(|known| known.iter().all(|t| titles.contains(t))) {
@@ -120,6 +129,10 @@ pub fn search(
         now = problem.fit(&best, best.set.clone(), END).unwrap_or(best);
         now = without_idle(problem, now, many)?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
+        // Where most is left the motion is not what intervals without the missing force make of it: more effects would stand for that.
+        if now.score - (found.nominal.score - found.left) > MOST_LEFT * found.left {
+            break;
+        }
     }
     found.best = now;
     Ok(found)
@@ -147,7 +160,7 @@ pub fn remainder(problem: &Problem<'_>, fit: &Fitted) -> Result<Remainder, Diagn
         k.gram[(0, 0)] + k.log_det
     };
     let stated = (1.0 + problem.stage.doubt).sqrt();
-    let silent = Spread { force: &fit.spread.force * NEXT_TO_NOTHING, noise: fit.spread.noise.map(|x| x.min(stated)) };
+    let silent = Spread { force: &fit.spread.force * 0.0, noise: fit.spread.noise.map(|x| x.min(stated)) };
     let (mean, variance) = (0.5 * problem.variances() as f64, 1.25 * problem.variances() as f64);
     // A gamma distribution of that mean and variance: the cube root is nearly normal.
     let shape = mean * mean / variance;
@@ -175,7 +188,7 @@ fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>) -> Result<Vec
     let here = at(&now.spread);
     let without = |j: usize| {
         let mut spread = now.spread.clone();
-        spread.force[j] *= NEXT_TO_NOTHING;
+        spread.force[j] = 0.0;
         at(&spread) - here
     };
     let rises: Vec<f64> = (0..problem.forces.len()).map(without).collect();
@@ -188,9 +201,6 @@ fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>) -> Result<Vec
     let is_in = |h: &Hypothesis| now.set.findings().any(|(m, _)| m.title() == h.title());
     Ok(all.into_iter().filter(|h| !is_in(h) && !is_dull(&h.place)).collect())
 }
-
-/// Factor of a force that is held to be none.
-const NEXT_TO_NOTHING: f64 = 1e-3;
 
 /// Linear sets beside a fit, the best first.
 fn linear_sets(

@@ -64,8 +64,6 @@ pub(super) const FURTHER: f64 = 0.3;
 const TAKING_PART: usize = 30;
 /// Steps of a spread.
 const STEPS: usize = 4;
-/// Factor of forces that are held to be none.
-const NO_FORCE: f64 = 1e-3;
 
 impl Ground<'_> {
     /// Sets of up to `most` effects; `none`: the model without any.
@@ -119,7 +117,7 @@ impl Ground<'_> {
 
     /// −2 log likelihood of a model that leaves noise alone.
     fn silent(&self, members: &[usize], spread: &Spread) -> f64 {
-        let none = Spread { force: &spread.force * NO_FORCE, noise: spread.noise.map(|_| 1.0) };
+        let none = Spread { force: &spread.force * 0.0, noise: spread.noise.map(|_| 1.0) };
         sum(&products(&self.chains(&self.columns(members)), &none)).log_det + self.count as f64
     }
 
@@ -171,7 +169,7 @@ impl Ground<'_> {
     fn products_of(&self, entries: &[usize], spread: &Spread) -> Marginal {
         let columns = self.columns(entries);
         let few = wide_products(self.runs, &columns, spread);
-        let all = self.active + self.pool.variations.len();
+        let all = self.active + self.pool.columns();
         let places: Vec<usize> = columns.iter().copied().chain([all]).collect();
         let mut gram = DMatrix::zeros(all + 1, all + 1);
         for (i, a) in places.iter().enumerate() {
@@ -229,5 +227,83 @@ impl Ground<'_> {
 
     fn price(&self, members: &[usize]) -> f64 {
         members.iter().map(|m| price(self.pool.of(*m), self.count, self.pool.hypotheses.len())).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::hypotheses;
+    use crate::facts::{Facts, JointFact};
+    use crate::identify::track::{Link, Side};
+    use nalgebra::DVector;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+    use std::sync::Arc;
+
+    const INTERVALS: usize = 60;
+    const SAMPLES: usize = 20;
+
+    /// Viscous friction of three joints, a column each.
+    fn pool() -> Pool {
+        let joint = |k: usize| JointFact { name: format!("j{k}"), coordinate: k, armature: 0.0, largest_command: 0.0 };
+        let facts = Facts { joints: (0..3).map(joint).collect(), duration: 1.0, ..Facts::default() };
+        let hypotheses: Vec<_> =
+            hypotheses(&facts).into_iter().filter(|h| h.name == "joint-viscous-friction").collect();
+        let entries = (0..3).map(|hypothesis| Entry { hypothesis, point: 0, columns: hypothesis..hypothesis + 1 });
+        Pool { entries: entries.collect(), hypotheses, variations: Vec::new() }
+    }
+
+    /// Readings of what the first two columns do by so much; the third is their sum and some of its own.
+    fn runs(truth: [f64; 2]) -> Vec<Linear> {
+        let mut dice = ChaCha8Rng::seed_from_u64(5);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut dice) };
+        let (mut links, mut sides) = (Vec::new(), Vec::new());
+        for _ in 0..INTERVALS {
+            let mut y = DMatrix::zeros(SAMPLES, 4);
+            for k in 0..SAMPLES {
+                let (a, b) = (10.0 * draw(), 10.0 * draw());
+                let row = [a, b, a + b + 3.0 * draw(), draw() - truth[0] * a - truth[1] * b];
+                (0..4).for_each(|c| y[(k, c)] = row[c]);
+            }
+            let s = DMatrix::from_fn(SAMPLES, 1, |_, _| draw());
+            let f = DMatrix::from_fn(SAMPLES, 1, |_, _| draw());
+            links.push(Link { s, f, a: DMatrix::identity(1, 1), b: DMatrix::zeros(1, 1) });
+            sides.push(Side { y, d: DMatrix::zeros(1, 4) });
+        }
+        let channels = vec![vec![0; SAMPLES]; INTERVALS];
+        vec![Linear { links: Arc::new(links), sides, channels, start: DVector::from_element(1, 1.0) }]
+    }
+
+    fn best(truth: [f64; 2]) -> Vec<usize> {
+        let (runs, pool, ridge) = (runs(truth), pool(), DMatrix::zeros(1, 1));
+        let ground = Ground { runs: &runs, ridge: &ridge, pool: &pool, active: 0, count: INTERVALS * SAMPLES };
+        let spread = Spread { force: DVector::from_element(1, 1e-2), noise: DVector::from_element(1, 1.0) };
+        let none = estimate(&ground.chains(&[]), None, &spread, 10);
+        let grown = ground.grow(&none, 3);
+        grown
+            .sets
+            .first()
+            .filter(|s| s.criterion < none.score)
+            .map_or(Vec::new(), |s| s.members.iter().map(|m| m.0).collect())
+    }
+
+    #[test]
+    fn two_effects_are_not_taken_for_what_they_have_in_common() {
+        let mut members = best([1.0, 1.0]);
+        members.sort_unstable();
+        assert_eq!(members, [0, 1]);
+    }
+
+    #[test]
+    fn one_effect_has_no_company_and_noise_has_no_effect() {
+        assert_eq!(best([1.0, 0.0]), [0]);
+        assert!(best([0.0, 0.0]).is_empty());
+    }
+
+    #[test]
+    fn friction_that_drives_is_none() {
+        assert!(best([1.0, -1.0]).iter().all(|m| *m != 1));
     }
 }
