@@ -12,6 +12,7 @@ mod approaches;
 pub mod attempt;
 pub mod catalogue;
 mod choice;
+mod clock;
 mod condition;
 mod curves;
 mod detect;

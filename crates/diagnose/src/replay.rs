@@ -175,12 +175,15 @@ fn sensors_of(built: &Built, tape: &Tape) -> Result<Vec<(Gauge, SensorModel)>, D
     Ok(sensors)
 }
 
+/// What a channel reads, and the faults of its sensor.
+type Sensor = (Gauge, SensorModel);
+
 /// Replays a span and hands what every sensor is given to read to `look`; what that took.
 fn measure<'a>(
     built: &Built,
     (tape, start): (&'a Tape, &Start),
     (span, pace): (Span, Pace),
-    (sensors, events): (&[(Gauge, SensorModel)], &[(usize, Event)]),
+    (sensors, events): (&[Sensor], &[(usize, Event)]),
     mut look: impl FnMut(usize, &Event, &Measured),
 ) -> Result<Replay<'a>, DiagnoseError> {
     let mut replay = Replay::new(built, tape, start, span.from, pace);

@@ -8,6 +8,7 @@
 use crate::along;
 use crate::attempt::Attempt;
 use crate::catalogue::{self, hypotheses};
+use crate::clock::Clock;
 use crate::curves;
 use crate::diagnosis::{Diagnosis, Explained, Verdict};
 use crate::error::DiagnoseError;
@@ -37,7 +38,6 @@ use rayon::prelude::*;
 use record::{RecordingSet, Role, Severity};
 use scenario::Scenario;
 use scenario::spec::Integrator;
-use std::time::Instant;
 
 /// What the search left to judge and to tell.
 pub(crate) struct Findings {
@@ -157,7 +157,7 @@ fn prepare<'w>(
     work: &'w Work<'w>,
     parts: f64,
 ) -> Result<Prepared<'w>, DiagnoseError> {
-    let mut clock = Clock { begun: Instant::now(), last: (0.0, work.total().simulated), work, timings: Vec::new() };
+    let mut clock = Clock::new(work);
     clock.stage("inspect the recording", 0.0);
     let inspection = record::inspect::inspect(set);
     refuse_foreign(&inspection)?;
@@ -523,34 +523,6 @@ const FINAL: Effort = Effort { iterations: 6, share: 1e-5, floor: 0.02, damping:
 const POLISH: Effort = Effort { iterations: 2, ..FINAL };
 /// Samples of a channel of a run that are enough to search by.
 const ENOUGH: usize = 3000;
-
-struct Clock<'a> {
-    begun: Instant,
-    last: (f64, f64),
-    work: &'a Work<'a>,
-    timings: Vec<evidence::Stage>,
-}
-
-impl Clock<'_> {
-    /// Ends the last stage and begins one.
-    fn stage(&mut self, name: &str, share: f64) {
-        let total = self.work.total();
-        let now = (self.begun.elapsed().as_secs_f64(), total.simulated);
-        if let Some(last) = self.timings.last_mut() {
-            (last.wall_s, last.simulated_s) = (now.0 - self.last.0, now.1 - self.last.1);
-        }
-        let speed = (now.1 - self.last.1) / (now.0 - self.last.0);
-        self.work.watch.step(&format!(
-            "{:.1} s simulated, {speed:.0} times real time; {} replays, {:.1} million evaluations so far",
-            now.1 - self.last.1,
-            total.replays,
-            1e-6 * total.evaluations as f64
-        ));
-        self.last = now;
-        self.timings.push(evidence::Stage { name: name.to_owned(), wall_s: 0.0, simulated_s: 0.0 });
-        self.work.watch.stage(name, share);
-    }
-}
 
 /// Data that contradict themselves cannot judge a model.
 fn refuse_foreign(inspection: &record::inspect::Inspection) -> Result<(), DiagnoseError> {

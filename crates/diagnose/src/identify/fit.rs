@@ -307,11 +307,13 @@ impl<'a> Problem<'a> {
         };
         let columns: Vec<_> = now.tracks.par_iter().zip(&bases).map(columns).collect();
         let channels = self.channels_of(&now.tracks);
-        let runs = now.tracks.iter().zip(&bases).zip(columns.iter().zip(&links)).zip(channels);
-        let linear = |(((t, b), (c, l)), channels): (((&Track, &Bases), (&Vec<Vec<Column>>, &Arc<Vec<Link>>)), _)| {
-            Linear { links: Arc::clone(l), sides: frame.sides(t, b, c), channels, start: now.first.clone() }
+        let linear = |(k, channels): (usize, Vec<Vec<u16>>)| Linear {
+            links: Arc::clone(&links[k]),
+            sides: frame.sides(&now.tracks[k], &bases[k], &columns[k]),
+            channels,
+            start: now.first.clone(),
         };
-        let runs: Vec<Linear> = runs.map(linear).collect();
+        let runs: Vec<Linear> = channels.into_iter().enumerate().map(linear).collect();
         let count = runs.iter().flat_map(|r| r.channels.iter()).map(Vec::len).sum();
         now.links = links;
         Ok(Made { runs, count })

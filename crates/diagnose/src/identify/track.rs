@@ -270,8 +270,8 @@ const SAME: f64 = 1e-9;
 /// Passes over the first interval, whose state is only guessed.
 const FIRST: usize = 3;
 
-fn matrices(columns: &[(DVector<f64>, DVector<f64>)], rows: usize, n_x: usize) -> (DMatrix<f64>, DMatrix<f64>) {
-    let of = |rows: usize, pick: fn(&(DVector<f64>, DVector<f64>)) -> &DVector<f64>| {
+fn matrices(columns: &[Column], rows: usize, n_x: usize) -> (DMatrix<f64>, DMatrix<f64>) {
+    let of = |rows: usize, pick: fn(&Column) -> &DVector<f64>| {
         DMatrix::from_fn(rows, columns.len(), |i, j| pick(&columns[j])[i])
     };
     (of(rows, |c| &c.0), of(n_x, |c| &c.1))

@@ -89,38 +89,8 @@ pub fn search(
         if round == 0 {
             (found.shown, found.left) = (shown(&pool, &grown), grown.left);
         }
-        let before = criterion(&now, many);
-        let mut best: Option<Fitted> = None;
-        let mut enough: Vec<Vec<String>> = Vec::new();
-        for set in chosen(&grown.sets, now.score) {
-            if problem.stage.work.is_spent(Until::Search) {
-                break;
-            }
-            let titles: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
-            // What adds to a set that leaves nothing adds nothing.
-            if enough.iter().any(|known| known.iter().all(|t| titles.contains(t))) {
-                continue;
-            }
-            let members = set.members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
-            let start = Fitted { spread: set.spread.clone(), ..now.clone() };
-            let Ok(fit) = problem.fit(&start, members, LOOK) else { continue };
-            let after = criterion(&fit, many);
-            let (promised, brought) = (now.score - set.score, now.score - fit.score);
-            watch.step(&format!(
-                "  {}: promised {promised:.1}, brought {brought:.1}, criterion {:.1}",
-                names(&fit.set),
-                after - before
-            ));
-            if remainder(problem, &fit)?.rise < cheapest {
-                enough.push(titles.clone());
-            }
-            let scores = [now.score, fit.score];
-            let set = fit.set.clone();
-            found.tried.push(Tried { round, set, added: titles, scores, criteria: [before, after], promised });
-            if after < best.as_ref().map_or(before, |b| criterion(b, many)) {
-                best = Some(fit);
-            }
-        }
+        let bounds = Bounds { round, many, cheapest };
+        let best = fit_sets(problem, &now, (&pool, &grown.sets), bounds, &mut found.tried)?;
         let Some(best) = best else { break };
         // What takes little of what an accepted set leaves stands for something that is not in the library.
         if round > 0 && now.score - best.score < FURTHER * grown.left {
@@ -136,6 +106,56 @@ pub fn search(
     }
     found.best = now;
     Ok(found)
+}
+
+/// What a round of fits goes by.
+#[derive(Clone, Copy)]
+struct Bounds {
+    round: usize,
+    /// Hypotheses.
+    many: usize,
+    /// Price of the cheapest effect.
+    cheapest: f64,
+}
+
+/// Fits the sets that promise most in full simulation; the best of them where it is worth its price.
+fn fit_sets(
+    problem: &Problem<'_>,
+    now: &Fitted,
+    (pool, sets): (&Pool, &[LinearSet]),
+    Bounds { round, many, cheapest }: Bounds,
+    tried: &mut Vec<Tried>,
+) -> Result<Option<Fitted>, DiagnoseError> {
+    let before = criterion(now, many);
+    let mut best: Option<Fitted> = None;
+    let mut enough: Vec<Vec<String>> = Vec::new();
+    for set in chosen(sets, now.score) {
+        if problem.stage.work.is_spent(Until::Search) {
+            break;
+        }
+        let added: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
+        // What adds to a set that leaves nothing adds nothing.
+        if enough.iter().any(|known| known.iter().all(|t| added.contains(t))) {
+            continue;
+        }
+        let members = set.members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
+        let start = Fitted { spread: set.spread.clone(), ..now.clone() };
+        let Ok(fit) = problem.fit(&start, members, LOOK) else { continue };
+        let after = criterion(&fit, many);
+        let (promised, brought) = (now.score - set.score, now.score - fit.score);
+        let (names, gain) = (names(&fit.set), after - before);
+        let said = format!("  {names}: promised {promised:.1}, brought {brought:.1}, criterion {gain:.1}");
+        problem.stage.work.watch.step(&said);
+        if remainder(problem, &fit)?.rise < cheapest {
+            enough.push(added.clone());
+        }
+        let scores = [now.score, fit.score];
+        tried.push(Tried { round, set: fit.set.clone(), added, scores, criteria: [before, after], promised });
+        if after < best.as_ref().map_or(before, |b| criterion(b, many)) {
+            best = Some(fit);
+        }
+    }
+    Ok(best)
 }
 
 /// What a fit leaves beyond noise.

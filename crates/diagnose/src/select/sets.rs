@@ -222,7 +222,13 @@ impl Ground<'_> {
         let left = found.score - self.silent(members, &found.spread);
         let members = self.possible(members, &found)?;
         let criterion = found.score + self.price(&members.iter().map(|m| m.0).collect::<Vec<_>>());
-        criterion.is_finite().then(|| LinearSet { members, criterion, left, score: found.score, spread: found.spread })
+        criterion.is_finite().then_some(LinearSet {
+            members,
+            criterion,
+            left,
+            score: found.score,
+            spread: found.spread,
+        })
     }
 
     fn price(&self, members: &[usize]) -> f64 {
