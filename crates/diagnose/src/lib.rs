@@ -20,6 +20,7 @@ pub mod diagnosis;
 pub mod error;
 pub mod evidence;
 pub mod facts;
+mod feed;
 pub mod fit;
 pub mod guess;
 pub mod hypothesis;

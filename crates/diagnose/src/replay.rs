@@ -4,6 +4,7 @@
 //! longer than the plant's step, so that nothing is interpolated; a sensor that is late reads at t − delay.
 
 use crate::error::DiagnoseError;
+use crate::feed::Feed;
 use crate::mounts::Mounts;
 use crate::plant::Built;
 use crate::reading::Value;
@@ -54,7 +55,7 @@ impl Pace {
 }
 
 /// Two instants closer than this are one, s.
-const SAME: f64 = 1e-9;
+pub(crate) const SAME: f64 = 1e-9;
 
 /// What faultless sensors would read in a replay, by the number of the event within the span, and what that took.
 #[derive(Clone, Debug)]
@@ -452,41 +453,6 @@ fn events_in(tape: &Tape, span: Span, sensors: &[(Gauge, SensorModel)]) -> Vec<(
         events.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
     }
     events
-}
-
-/// The commands that act now, and when they change.
-struct Feed<'a> {
-    tape: &'a Tape,
-    tick: usize,
-    at: Vec<usize>,
-}
-
-impl<'a> Feed<'a> {
-    fn new(tape: &'a Tape, time: f64) -> Self {
-        let mut feed = Self { tape, tick: 0, at: vec![0; tape.commands.len()] };
-        feed.turn(tape, time);
-        feed
-    }
-
-    fn next_tick(&self, tape: &Tape) -> f64 {
-        tape.ticks.get(self.tick).copied().unwrap_or(f64::INFINITY)
-    }
-
-    fn turn(&mut self, tape: &Tape, time: f64) {
-        self.tick = tape.ticks.partition_point(|t| *t <= time + SAME);
-        for (at, command) in self.at.iter_mut().zip(&tape.commands) {
-            while *at < command.times.len() && command.times[*at] <= time + SAME {
-                *at += 1;
-            }
-        }
-    }
-
-    fn apply(&self, world: &mut World) {
-        for (at, command) in self.at.iter().zip(&self.tape.commands) {
-            let effort = at.checked_sub(1).map_or(0.0, |i| command.efforts[i]);
-            world.commands_mut()[command.actuator].effort = effort;
-        }
-    }
 }
 
 #[cfg(test)]

@@ -249,17 +249,8 @@ fn diagnose_whole(
     }
     clock.stage("predict every run", 0.8);
     let best = &course.found.best;
-    let known = along::windows(few, plant, (&own, window), &course.found.nominal)?;
-    let known = Fit { set: EffectSet::default(), built: nominal.built.clone(), ..known };
-    let corrected = along::windows(few, plant, (&own, window), &Fitted { set: best.set.clone(), ..thin_best })?;
-    let runs: Vec<Segment> =
-        joined(&corrected.segments, few.tapes).into_iter().filter(|s| few.tapes[s.run].role == Role::Fit).collect();
-    let whole = follow(few, plant, best.set.frozen(), &runs)?;
-    let follows = whole.rms() < lost::NEAR;
-    let windows = along::windows_of(few, best, window);
-    let found = along::as_fit(few, best, if follows { whole.segments } else { windows });
-    let corrected = Fit { set: best.set.clone(), built: best.built.clone(), ..corrected };
-    let judgement = judge((few, &stage), plant, ([&known, &known], &corrected), (window, follows))?;
+    let Predicted { found, follows, judgement } =
+        predict_along((few, &stage), plant, (&course, thin_best), (&own, window))?;
     let left = left_by((few, few), plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
     let (explained, helps) = share::explained(&judgement, &tapes, &found, window);
@@ -285,6 +276,35 @@ fn diagnose_whole(
         discretisation,
     };
     Ok(Some(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder)))
+}
+
+/// What whole runs and windows are predicted to be, by the nominal and by the corrected model.
+struct Predicted {
+    found: Fit,
+    follows: bool,
+    judgement: Judgement,
+}
+
+/// Predicts all runs from the states that a search along them has found.
+fn predict_along(
+    (few, all): (&Stage<'_>, &Stage<'_>),
+    plant: &Plant,
+    (course, thin_best): (&along::Course, Fitted),
+    (own, window): (&Facts, f64),
+) -> Result<Predicted, DiagnoseError> {
+    let best = &course.found.best;
+    let known = along::windows(few, plant, (own, window), &course.found.nominal)?;
+    let known = Fit { set: EffectSet::default(), built: plant.build(&[])?, ..known };
+    let corrected = along::windows(few, plant, (own, window), &Fitted { set: best.set.clone(), ..thin_best })?;
+    let runs: Vec<Segment> =
+        joined(&corrected.segments, few.tapes).into_iter().filter(|s| few.tapes[s.run].role == Role::Fit).collect();
+    let whole = follow(few, plant, best.set.frozen(), &runs)?;
+    let follows = whole.rms() < lost::NEAR;
+    let windows = along::windows_of(few, best, window);
+    let found = along::as_fit(few, best, if follows { whole.segments } else { windows });
+    let corrected = Fit { set: best.set.clone(), built: best.built.clone(), ..corrected };
+    let judgement = judge((few, all), plant, ([&known, &known], &corrected), (window, follows))?;
+    Ok(Predicted { found, follows, judgement })
 }
 
 /// What was detected, what was found, and what of it remains.

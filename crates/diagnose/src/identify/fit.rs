@@ -76,8 +76,9 @@ pub struct Reach {
     pub reuse: bool,
 }
 
-/// Intervals of a run.
-const KNOTS: usize = 96;
+/// Intervals of a run, and samples of its sparsest reading that each has.
+const KNOTS: std::ops::RangeInclusive<usize> = 24..=96;
+const SAMPLES: usize = 12;
 /// Promised fall of −2 log likelihood below which a fit has converged.
 const CONVERGED: f64 = 0.3;
 /// Most times that a step is halved.
@@ -98,7 +99,9 @@ impl<'a> Problem<'a> {
             stage.tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.channel.clone())).collect();
         channels.sort();
         channels.dedup();
-        Self { stage, plant, runs, knots: KNOTS, forces: forces(facts), channels }
+        let sampled = stage.tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.times.len()));
+        let knots = (sampled.min().unwrap_or(0) / SAMPLES).clamp(*KNOTS.start(), *KNOTS.end());
+        Self { stage, plant, runs, knots, forces: forces(facts), channels }
     }
 
     fn frame<'f>(&'f self, of: &'f Fitted) -> Frame<'f> {

@@ -1,0 +1,40 @@
+//! Recorded commands, as a replay hears them.
+
+use crate::replay::SAME;
+use crate::tape::Tape;
+use sim::World;
+
+/// The commands that act now, and when they change.
+pub(crate) struct Feed<'a> {
+    tape: &'a Tape,
+    tick: usize,
+    at: Vec<usize>,
+}
+
+impl<'a> Feed<'a> {
+    pub(crate) fn new(tape: &'a Tape, time: f64) -> Self {
+        let mut feed = Self { tape, tick: 0, at: vec![0; tape.commands.len()] };
+        feed.turn(tape, time);
+        feed
+    }
+
+    pub(crate) fn next_tick(&self, tape: &Tape) -> f64 {
+        tape.ticks.get(self.tick).copied().unwrap_or(f64::INFINITY)
+    }
+
+    pub(crate) fn turn(&mut self, tape: &Tape, time: f64) {
+        self.tick = tape.ticks.partition_point(|t| *t <= time + SAME);
+        for (at, command) in self.at.iter_mut().zip(&tape.commands) {
+            while *at < command.times.len() && command.times[*at] <= time + SAME {
+                *at += 1;
+            }
+        }
+    }
+
+    pub(crate) fn apply(&self, world: &mut World) {
+        for (at, command) in self.at.iter().zip(&self.tape.commands) {
+            let effort = at.checked_sub(1).map_or(0.0, |i| command.efforts[i]);
+            world.commands_mut()[command.actuator].effort = effort;
+        }
+    }
+}
