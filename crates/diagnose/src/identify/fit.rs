@@ -132,6 +132,9 @@ impl<'a> Problem<'a> {
 
     /// The nominal model along all runs.
     pub fn begin(&self) -> Result<Fitted, DiagnoseError> {
+        if self.runs.is_empty() {
+            return Err(self.lost());
+        }
         let set = EffectSet::default();
         let built = self.plant.build(&[])?;
         let mut tracks: Vec<Track> =

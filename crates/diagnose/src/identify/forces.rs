@@ -62,7 +62,7 @@ pub fn first_spread(freedoms: &[Freedom], steps: &[DVector<f64>], b: &DMatrix<f6
     DVector::from_iterator(b.ncols(), (0..b.ncols()).map(of))
 }
 
-/// Name of a model's coordinates that carry a built force.
+/// Whether a model remembers more than another: memory of effects, or joints of parts inside.
 pub(crate) fn has_memory(built: &Built, beside: &Built) -> bool {
     built.start.effects.len() > beside.start.effects.len() || built.start.q.len() > beside.start.q.len()
 }

@@ -105,7 +105,6 @@ impl Linear {
 
     /// Products of very many columns at one spread.
     pub fn summed(&self, columns: &[usize], spread: &Spread) -> Chain {
-        let mut chain = Linear { channels: Vec::new(), ..self.clone_links() }.empty();
         let node = |((link, side), channels): ((&Link, &Side), &Vec<u16>)| {
             let kept: Vec<usize> = columns.iter().copied().chain([side.y.ncols() - 1]).collect();
             let (n_x, n_f) = (link.s.ncols(), link.f.ncols());
@@ -122,16 +121,8 @@ impl Linear {
             let gram = all.tr_mul(&all);
             Node { grams: vec![(0, gram)], a: link.a.clone(), b: link.b.clone(), d: side.d.select_columns(&kept) }
         };
-        chain.nodes = self.links.par_iter().zip(&self.sides).zip(&self.channels).map(node).collect();
-        chain
-    }
-
-    fn clone_links(&self) -> Self {
-        Self { links: Arc::clone(&self.links), sides: Vec::new(), channels: Vec::new(), start: self.start.clone() }
-    }
-
-    fn empty(self) -> Chain {
-        Chain { nodes: Vec::new(), start: self.start, samples: Vec::new() }
+        let nodes = self.links.par_iter().zip(&self.sides).zip(&self.channels).map(node).collect();
+        Chain { nodes, start: self.start.clone(), samples: Vec::new() }
     }
 }
 
@@ -174,6 +165,12 @@ pub fn sum(parts: &[Marginal]) -> Marginal {
     let width = parts.first().map_or(1, |p| p.gram.ncols());
     let zero = Marginal { gram: DMatrix::zeros(width, width), log_det: 0.0 };
     parts.iter().fold(zero, |sum, p| Marginal { gram: sum.gram + &p.gram, log_det: sum.log_det + p.log_det })
+}
+
+/// −2 log likelihood of a model without numbers at a given spread.
+pub fn score(runs: &[Chain], spread: &Spread) -> f64 {
+    let k = sum(&products(runs, spread));
+    k.gram[(0, 0)] + k.log_det
 }
 
 /// The numbers that are best at a given spread. `ridge`: products of the numbers' priors, of the same shape as K.

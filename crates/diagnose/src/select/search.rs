@@ -7,7 +7,7 @@ use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach, ridge_of};
-use crate::identify::marginal::{Spread, estimate, products, sum};
+use crate::identify::marginal::{Spread, estimate, score};
 use crate::screen::Score;
 use crate::standing::told;
 use crate::work::Until;
@@ -175,10 +175,7 @@ pub fn remainder(problem: &Problem<'_>, fit: &Fitted) -> Result<Remainder, Diagn
     let mut bare = fit.clone();
     let made = problem.linearise(&mut bare, &[], true)?;
     let chains = made.chains(&[]);
-    let at = |spread: &Spread| {
-        let k = sum(&products(&chains, spread));
-        k.gram[(0, 0)] + k.log_det
-    };
+    let at = |spread: &Spread| score(&chains, spread);
     let stated = (1.0 + problem.stage.doubt).sqrt();
     let silent = Spread { force: &fit.spread.force * 0.0, noise: fit.spread.noise.map(|x| x.min(stated)) };
     let (mean, variance) = (0.5 * problem.variances() as f64, 1.25 * problem.variances() as f64);
@@ -201,10 +198,7 @@ fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>) -> Result<Vec
     let mut bare = now.clone();
     let made = problem.linearise(&mut bare, &[], true)?;
     let chains = made.chains(&[]);
-    let at = |spread: &Spread| {
-        let k = sum(&products(&chains, spread));
-        k.gram[(0, 0)] + k.log_det
-    };
+    let at = |spread: &Spread| score(&chains, spread);
     let here = at(&now.spread);
     let without = |j: usize| {
         let mut spread = now.spread.clone();
