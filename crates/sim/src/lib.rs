@@ -37,6 +37,7 @@ mod error;
 mod mechanism;
 mod model;
 mod pivots;
+mod push;
 mod rk4;
 mod rk4_bristle;
 mod run;
@@ -63,6 +64,7 @@ pub use mechanism::{
     Overload, PullIn, Side, Strength, Strut, StrutSides, Weld,
 };
 pub use model::{Base, Grain, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, Vehicle, VehicleSpec};
+pub use push::Push;
 pub use run::{Controller, Flow, NoControl, Observer};
 pub use state::{Account, ContactMemory, Pending, State, Work};
 pub use world::{Rest, TouchReport, World};

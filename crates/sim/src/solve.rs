@@ -343,6 +343,10 @@ fn write_rhs(model: &Model, ws: &mut Workspace, i: usize, h: f64) {
     for ((&row, line), tau) in rows[6..].iter().zip(&ws.coordinate_lines[range.clone()]).zip(&ws.tau[range]) {
         rhs[row] = h * (line.0 - tau);
     }
+    if let Some(push) = &ws.push {
+        let own = push.joints.iter().skip(vehicle.v0).take(vehicle.tree.nv);
+        rows[6..].iter().zip(own).for_each(|(&row, effort)| rhs[row] += h * effort);
+    }
 }
 
 fn read_gains(model: &Model, ws: &mut Workspace, i: usize) {

@@ -18,6 +18,7 @@ use crate::effect::{self, Acting};
 use crate::mechanism;
 use crate::model::{Base, Model};
 use crate::pivots;
+use crate::push;
 use crate::solve;
 use crate::speed_limit;
 use crate::state::State;
@@ -171,6 +172,7 @@ pub(crate) fn calc_external(model: &Model, state: &State, ws: &mut Workspace) {
         }
     }
     effect::add_wrenches(model, state, ws);
+    push::add_to_bases(model, ws);
 }
 
 /// What motion takes beyond the external forces, at zero acceleration: with the start's velocities, or with those half

@@ -4,6 +4,7 @@ use crate::actuator::{CoordinateForce, CoordinatePoint};
 use crate::contacts::{Answer, Touch};
 use crate::effect::calc_carried;
 use crate::model::{Base, Model, Vehicle};
+use crate::push::Push;
 use crate::state::State;
 use contact::{ContactPoint, Detector};
 use multibody::{Dynamics, Kinematics, calc_locked_inertia, calc_momentum};
@@ -69,6 +70,8 @@ pub(crate) struct Workspace {
     /// Linearisation of the coordinate laws: effort at zero gain, and slope.
     pub coordinate_lines: Vec<(f64, f64)>,
     pub islands: crate::solve::Islands,
+    /// Forces beside all laws.
+    pub push: Option<Push>,
     pub memories: Vec<crate::state::ContactMemory>,
     pub parts: crate::effect::Parts,
     pub rk: crate::rk4::Stages,
@@ -125,6 +128,7 @@ impl Workspace {
             coordinate_forces: vec![CoordinateForce::default(); nv],
             coordinate_lines: vec![(0.0, 0.0); nv],
             islands: crate::solve::Islands::new(model),
+            push: None,
             memories: Vec::new(),
             parts: crate::effect::Parts::new(model),
             rk: crate::rk4::Stages::new(model),

@@ -6,6 +6,7 @@ use crate::effect;
 use crate::error::StepError;
 use crate::mechanism::{self, MechanismKind, MechanismMemory, MechanismReport};
 use crate::model::{Integrator, Model};
+use crate::push::Push;
 use crate::state::{ContactMemory, State};
 use crate::step::{self, Scheme};
 use crate::workspace::{Workspace, calc_world_momentum};
@@ -99,6 +100,11 @@ impl World {
     pub fn with_integrator(mut self, integrator: Integrator) -> Self {
         self.integrator = integrator;
         self
+    }
+
+    /// Lets forces beside all laws act from now on, or none.
+    pub fn push(&mut self, push: Option<Push>) {
+        self.ws.push = push;
     }
 
     /// The model.

@@ -31,6 +31,7 @@ mod mechanism_latches;
 mod mechanism_struts;
 mod momentum;
 mod orbit;
+mod pushes;
 mod resting;
 mod restitution;
 mod speed_limits;

@@ -1,0 +1,29 @@
+//! Forces from nowhere: what an estimator holds to be missing, beside all laws.
+//!
+//!   joints   τᵢ   on coordinate i
+//!   bases    (M, F)  on the base link, about its origin, link axes
+//!
+//! They act throughout until they are changed, are no part of any law, and stand in no account of works.
+
+use crate::model::Model;
+use crate::workspace::Workspace;
+use spatial::Wrench;
+
+/// Forces beside all laws.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Push {
+    /// By coordinate, N·m or N; those beyond the end are none.
+    pub joints: Vec<f64>,
+    /// By vehicle, on its base link about the link's origin, link axes; those beyond the end are none.
+    pub bases: Vec<Wrench>,
+}
+
+/// Adds what acts on bases to the forces from outside.
+pub(crate) fn add_to_bases(model: &Model, ws: &mut Workspace) {
+    let Some(push) = &ws.push else { return };
+    for ((vehicle, kin), push) in model.vehicles.iter().zip(&ws.kin).zip(&push.bases) {
+        // The anchor of a vehicle is the origin of its base link.
+        let rot = &kin.rot[0];
+        ws.external[vehicle.body0] += Wrench::new(rot * push.moment, rot * push.force);
+    }
+}
