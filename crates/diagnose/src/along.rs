@@ -92,7 +92,7 @@ pub(crate) fn windows(
 
 /// Windows of the runs of a fit.
 pub(crate) fn windows_of(stage: &Stage<'_>, fitted: &Fitted, window: f64) -> Vec<Segment> {
-    let frame = Frame { stage, built: &fitted.built, freedoms: &fitted.freedoms, forces: &fitted.forces };
+    let frame = Frame { stage, built: &fitted.built, freedoms: &fitted.freedoms, forces: &[] };
     let of_run = |track: &crate::identify::track::Track| {
         let spans = crate::linear::windows(&stage.tapes[track.run], Some(window));
         let segment = |span: Span| {

@@ -91,7 +91,7 @@ fn bodies(built: &Built) -> Vec<BodyFact> {
         pairs.into_iter().any(|p| built.model.pair_bodies(p).0 == body || built.model.pair_bodies(p).1 == body)
     };
     let mut all = Vec::new();
-    for vehicle in &built.model.vehicles {
+    for (number, vehicle) in built.model.vehicles.iter().enumerate() {
         for (l, link) in vehicle.tree.links.iter().enumerate().filter(|(_, l)| l.inertia.mass > 0.0) {
             let is_base = link.body == 0 && l == 0;
             if link.body == 0 && vehicle.base.is_held() {
@@ -102,6 +102,7 @@ fn bodies(built: &Built) -> Vec<BodyFact> {
             let pushed = built.model.actuators.iter().any(|a| thrust(&a.kind));
             all.push(BodyFact {
                 name: link.name.clone(),
+                vehicle: number,
                 mass: link.inertia.mass,
                 com: link.inertia.com(),
                 inertia: link.inertia.tensor_com(),

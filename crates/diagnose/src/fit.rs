@@ -46,6 +46,11 @@ impl EffectSet {
         self.members.iter().filter(|(h, _)| !h.is_tolerated())
     }
 
+    /// What each member is and where.
+    pub fn titles(&self) -> Vec<String> {
+        self.members.iter().map(|(h, _)| h.title()).collect()
+    }
+
     /// Whether it says anything beyond tolerances.
     pub fn has_findings(&self) -> bool {
         self.findings().next().is_some()

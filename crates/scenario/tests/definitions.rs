@@ -26,6 +26,7 @@ fn actuators() -> [ActuatorFact; 2] {
 fn bodies() -> [BodyFact; 2] {
     let base = BodyFact {
         name: "base".into(),
+        vehicle: 0,
         mass: 4.0,
         com: Vec3::new(0.2, 0.0, 0.0),
         inertia: Mat3::from_diagonal(&Vec3::new(1.0, 2.0, 2.5)),

@@ -54,6 +54,7 @@ mod tests {
             joints: vec![JointFact { name: "hinge".into(), coordinate: 0, armature: 0.0, largest_command: 2.0 }],
             bodies: vec![BodyFact {
                 name: "bar".into(),
+                vehicle: 0,
                 mass: 4.0,
                 com: Vec3::new(0.2, 0.0, 0.0),
                 inertia: Mat3::from_diagonal(&Vec3::new(1.0, 2.0, 3.0)),

@@ -204,8 +204,8 @@ fn told_by(node: &Node, gram: &DMatrix<f64>, prior: Prior<'_>, later: &DMatrix<f
 pub struct Update {
     /// Change of the interval's state.
     pub state: DVector<f64>,
-    /// Change of its end.
-    pub end: DVector<f64>,
+    /// Its force.
+    pub force: DVector<f64>,
     /// Root of the covariance of the end.
     pub root: DMatrix<f64>,
 }
@@ -219,7 +219,8 @@ pub fn update(node: &Node, l: &DMatrix<f64>, prior: Prior<'_>) -> Update {
     let hv = rooted(&gram.view((0, n_u), (n_u, 1)).into_owned(), l, prior.force);
     let zeta = -n.solve(&hv).column(0);
     let t = beside(&(&node.a * l), &scaled(&node.b, prior.force));
-    Update { state: l * zeta.rows(0, l.ncols()), end: &t * &zeta, root: root(&n, &t) }
+    let (xi, phi) = (zeta.rows(0, l.ncols()), zeta.rows(l.ncols(), prior.force.len()));
+    Update { state: l * xi, force: phi.component_mul(prior.force), root: root(&n, &t) }
 }
 
 /// 1 + X, factored; X is not negative but for round-off, which is scaled away where it counts.

@@ -5,7 +5,7 @@
 //! numbers themselves. A step is taken if it lowers the marginal likelihood's −2 log as made linear there, and halved where it does not.
 
 use super::chain::Prior;
-use super::forces::{Force, first_spread, forces, vary_forces};
+use super::forces::{Force, first_spread, forces};
 use super::marginal::{Chain, Estimate, Linear, Spread, estimate};
 use super::track::{Bases, Column, Frame, Link, Track, coordinates};
 use crate::error::DiagnoseError;
@@ -45,8 +45,6 @@ pub struct Fitted {
     pub built: Built,
     /// Coordinates of a state.
     pub freedoms: Vec<Freedom>,
-    /// Models with a force each.
-    pub forces: Vec<Variation>,
     /// Runs with their states.
     pub tracks: Vec<Track>,
     /// Derivatives by states and forces, as last taken.
@@ -105,7 +103,7 @@ impl<'a> Problem<'a> {
     }
 
     fn frame<'f>(&'f self, of: &'f Fitted) -> Frame<'f> {
-        Frame { stage: &self.stage, built: &of.built, freedoms: &of.freedoms, forces: &of.forces }
+        Frame { stage: &self.stage, built: &of.built, freedoms: &of.freedoms, forces: &self.forces }
     }
 
     /// Variances that are estimated.
@@ -138,10 +136,9 @@ impl<'a> Problem<'a> {
         let set = EffectSet::default();
         let built = self.plant.build(&[])?;
         let mut tracks: Vec<Track> =
-            self.runs.par_iter().map(|r| Track::cut(&self.stage, &built, *r, self.knots)).collect::<Result<_, _>>()?;
+            self.runs.par_iter().map(|r| self.cut(&built, *r)).collect::<Result<_, _>>()?;
         let freedoms = coordinates(&built, &tracks[0].intervals[0].start);
-        let forces = vary_forces(self.plant, &set, &self.forces)?;
-        let frame = Frame { stage: &self.stage, built: &built, freedoms: &freedoms, forces: &forces };
+        let frame = Frame { stage: &self.stage, built: &built, freedoms: &freedoms, forces: &self.forces };
         let typical = frame.link(tracks[0].run, &tracks[0].intervals[self.knots / 2]).ok_or_else(|| self.lost())?;
         let step = |w: &[super::track::Interval]| DVector::from_vec(w[1].start.difference(&w[0].start, &freedoms));
         let steps: Vec<DVector<f64>> = tracks.iter().flat_map(|t| t.intervals.windows(2).map(step)).collect();
@@ -152,13 +149,12 @@ impl<'a> Problem<'a> {
         let first = |k: usize| (UNKNOWN / typical.s.column(k).norm()).min(LARGEST);
         let first = DVector::from_iterator(freedoms.len(), (0..freedoms.len()).map(first));
         let prior = Prior { start: &first, force: &spread.force, noise: &spread.noise };
-        let links: Option<Vec<Vec<Link>>> = tracks.par_iter_mut().map(|t| frame.follow(t, prior)).collect();
+        let links: Option<Vec<Vec<Link>>> = tracks.par_iter_mut().map(|t| frame.follow(t, prior, None)).collect();
         let links = links.ok_or_else(|| self.lost())?.into_iter().map(Arc::new).collect();
         let none = Fitted {
             set,
             built,
             freedoms,
-            forces,
             tracks,
             links,
             first,
@@ -172,12 +168,18 @@ impl<'a> Problem<'a> {
         self.settle(none, SETTLING, true)
     }
 
+    fn cut(&self, built: &Built, run: usize) -> Result<Track, DiagnoseError> {
+        Track::cut(&self.stage, (built, self.forces.len()), run, self.knots)
+    }
+
     /// The same fit on other samples of the same runs.
     pub fn onto(&self, of: &Fitted) -> Result<Fitted, DiagnoseError> {
         let cut = |track: &Track| -> Result<Track, DiagnoseError> {
-            let mut fresh = Track::cut(&self.stage, &of.built, track.run, self.knots)?;
-            let pairs = fresh.intervals.iter_mut().zip(&track.intervals);
-            pairs.for_each(|(own, known)| own.start.clone_from(&known.start));
+            let mut fresh = self.cut(&of.built, track.run)?;
+            for (own, known) in fresh.intervals.iter_mut().zip(&track.intervals) {
+                own.start.clone_from(&known.start);
+                own.force.clone_from(&known.force);
+            }
             Ok(fresh)
         };
         let tracks = of.tracks.iter().map(cut).collect::<Result<_, _>>()?;
@@ -187,8 +189,9 @@ impl<'a> Problem<'a> {
     /// A set along other runs than those that it was fitted to, its numbers as they are.
     pub fn along(&self, of: &Fitted, set: &EffectSet) -> Result<Fitted, DiagnoseError> {
         let nominal = self.begin()?;
-        let mut now = self.with(&nominal, set.frozen(), true)?;
+        let mut now = self.with(&nominal, set.frozen())?;
         now.spread.clone_from(&of.spread);
+        self.follow(&mut now)?;
         self.settle(now, SETTLING, true)
     }
 
@@ -220,7 +223,10 @@ impl<'a> Problem<'a> {
 
     /// A set fitted, from where another one stands.
     pub fn fit(&self, from: &Fitted, set: EffectSet, reach: Reach) -> Result<Fitted, DiagnoseError> {
-        let mut now = self.with(from, set, reach.reuse)?;
+        let mut now = self.with(from, set)?;
+        if now.set.titles() != from.set.titles() {
+            self.follow(&mut now)?;
+        }
         let slots = now.set.slots();
         if slots.is_empty() {
             return self.settle(now, SETTLING, reach.reuse);
@@ -257,12 +263,27 @@ impl<'a> Problem<'a> {
             before = Some(now.clone());
             let set = now.set.moved(&slots, found.theta.as_slice());
             let tracks = self.moved(&now, &chains, &found);
-            now = Fitted { tracks, spread: found.spread, ..self.with(&now, set, true)? };
+            now = Fitted { tracks, spread: found.spread, ..self.with(&now, set)? };
         }
         match before {
             Some(last) if now.score.is_nan() || now.score > last.score + CONVERGED => Ok(last),
             _ => Ok(now),
         }
+    }
+
+    /// Lets the runs be followed by another model than that which their states are of: what pushed them, pushes it no more or more.
+    fn follow(&self, now: &mut Fitted) -> Result<(), DiagnoseError> {
+        let mut tracks = now.tracks.clone();
+        let frame = self.frame(now);
+        let prior = Prior { start: &now.first, force: &now.spread.force, noise: &now.spread.noise };
+        let follow = |(k, track): (usize, &mut Track)| {
+            let known = now.links.get(k).map(|links| links.as_slice());
+            frame.follow(track, prior, known).map(Arc::new)
+        };
+        let links: Option<Vec<Arc<Vec<Link>>>> = tracks.par_iter_mut().enumerate().map(follow).collect();
+        now.links = links.ok_or_else(|| self.lost())?;
+        now.tracks = tracks;
+        Ok(())
     }
 
     /// Half way between two fits of the same set.
@@ -271,21 +292,23 @@ impl<'a> Problem<'a> {
         let by: Vec<f64> =
             slots.iter().map(|(m, k)| 0.5 * (b.set.members[*m].1[*k] - a.set.members[*m].1[*k])).collect();
         let set = a.set.moved(&slots, &by);
-        Ok(Fitted { tracks: a.tracks.clone(), spread: a.spread.clone(), ..self.with(b, set, true)? })
+        let half = self.with(b, set)?;
+        let frame = self.frame(&half);
+        let tracks = a.tracks.iter().zip(&b.tracks).map(|(a, b)| frame.between(a, b)).collect();
+        Ok(Fitted { tracks, spread: a.spread.clone(), ..half })
     }
 
     /// Another set at the states of a fit.
-    fn with(&self, from: &Fitted, set: EffectSet, reuse: bool) -> Result<Fitted, DiagnoseError> {
+    fn with(&self, from: &Fitted, set: EffectSet) -> Result<Fitted, DiagnoseError> {
         let built = self.plant.build(&set.effects())?;
         let freedoms = coordinates(&built, &from.tracks[0].intervals[0].start.fitted_to(&built));
         let is_same = freedoms == from.freedoms;
-        let forces = if is_same && reuse { from.forces.clone() } else { vary_forces(self.plant, &set, &self.forces)? };
         let first = |f: &Freedom| {
             let known = from.freedoms.iter().position(|g| g == f);
             known.map_or(LARGEST, |k| from.first[k])
         };
         let first = DVector::from_iterator(freedoms.len(), freedoms.iter().map(first));
-        let mut now = Fitted { set, built, freedoms, forces, first, ..from.clone() };
+        let mut now = Fitted { set, built, freedoms, first, ..from.clone() };
         if !is_same {
             now.links = Vec::new();
         }
@@ -315,7 +338,7 @@ impl<'a> Problem<'a> {
         let channels = self.channels_of(&now.tracks);
         let linear = |(k, channels): (usize, Vec<Vec<u16>>)| Linear {
             links: Arc::clone(&links[k]),
-            sides: frame.sides(&now.tracks[k], &bases[k], &columns[k]),
+            sides: frame.sides(&now.tracks[k], &links[k], &bases[k], &columns[k]),
             channels,
             start: now.first.clone(),
         };

@@ -1,14 +1,11 @@
 //! Unknown forces: one on every coordinate that moves, constant over an interval.
 
-use crate::error::DiagnoseError;
 use crate::facts::Facts;
-use crate::fit::EffectSet;
-use crate::linear::Variation;
-use crate::locate::places;
-use crate::plant::{Built, Plant};
+use crate::plant::Built;
 use crate::start::Freedom;
 use nalgebra::{DMatrix, DVector};
-use scenario::spec::Effect;
+use sim::Push;
+use spatial::{Vec3, Wrench};
 
 /// An unknown force.
 #[derive(Clone, Debug)]
@@ -17,35 +14,70 @@ pub struct Force {
     pub place: String,
     /// Which of the forces there: "torque x".
     pub label: String,
-    effect: Effect,
-    size: f64,
+    /// Where it acts.
+    along: Along,
+    /// A small one, N or N·m: the step of difference quotients.
+    pub size: f64,
 }
+
+/// Where a force acts, and what one of unit size is.
+#[derive(Clone, Copy, Debug)]
+enum Along {
+    /// A joint's coordinate, index into `v`.
+    Joint(usize),
+    /// The base link of a vehicle, about its origin, link axes.
+    Base(usize, Wrench),
+}
+
+/// Steps of difference quotients: N·m or N on a joint, and on a base in shares of its inertia or mass.
+const ON_JOINT: f64 = 1e-2;
+const ON_BASE: f64 = 1e-4;
 
 /// The forces on all coordinates of a model.
 pub fn forces(facts: &Facts) -> Vec<Force> {
-    let of_place = |place: crate::locate::Place| {
-        let steady = |(label, effect, size): (String, Effect, f64)| {
-            let label = label.strip_suffix("constant").map(|l| l.trim_end().to_owned())?;
-            place.name.strip_prefix("contact:").is_none().then(|| Force {
-                place: place.name.clone(),
-                label,
-                effect,
-                size,
-            })
-        };
-        place.columns.clone().into_iter().filter_map(steady).collect::<Vec<_>>()
+    let of_joint = |joint: &crate::facts::JointFact| Force {
+        place: format!("joint:{}", joint.name),
+        label: String::new(),
+        along: Along::Joint(joint.coordinate),
+        size: ON_JOINT,
     };
-    places(facts, 1.0).into_iter().flat_map(of_place).collect()
+    let mut all: Vec<Force> = facts.joints.iter().map(of_joint).collect();
+    for body in facts.bodies.iter().filter(|b| b.is_base) {
+        for (k, name) in ["torque x", "torque y", "torque z", "force x", "force y", "force z"].into_iter().enumerate() {
+            let unit = Vec3::ith(k % 3, 1.0);
+            let (wrench, size) = match k < 3 {
+                true => (Wrench::new(unit, Vec3::zeros()), ON_BASE * body.inertia.trace()),
+                false => (Wrench::from_force_at(unit, &body.com), ON_BASE * body.mass),
+            };
+            if body.mask[k] {
+                let along = Along::Base(body.vehicle, wrench);
+                all.push(Force { place: format!("body:{}", body.name), label: name.to_owned(), along, size });
+            }
+        }
+    }
+    all
 }
 
-/// A model for each force, beside a set of effects.
-pub fn vary_forces(plant: &Plant, set: &EffectSet, forces: &[Force]) -> Result<Vec<Variation>, DiagnoseError> {
-    let vary = |force: &Force| {
-        let mut effects = set.effects();
-        effects.push(force.effect.clone());
-        Ok(Variation { built: plant.build(&effects)?, step: force.size, is_tolerated: false })
-    };
-    forces.iter().map(vary).collect()
+/// Forces of some sizes together; none where all of them are nothing.
+pub fn pushing(forces: &[Force], sizes: &DVector<f64>) -> Option<Push> {
+    if sizes.iter().all(|s| *s == 0.0) {
+        return None;
+    }
+    let mut push = Push::default();
+    for (force, size) in forces.iter().zip(sizes.iter()) {
+        match force.along {
+            Along::Joint(coordinate) => *at(&mut push.joints, coordinate) += size,
+            Along::Base(vehicle, unit) => *at(&mut push.bases, vehicle) += unit * *size,
+        }
+    }
+    Some(push)
+}
+
+fn at<T: Clone + Default>(all: &mut Vec<T>, index: usize) -> &mut T {
+    if all.len() <= index {
+        all.resize(index + 1, T::default());
+    }
+    &mut all[index]
 }
 
 /// Forces that would by themselves move the rates as these move from interval to interval: beyond them nothing is unknown. `steps`: changes
@@ -65,4 +97,35 @@ pub fn first_spread(freedoms: &[Freedom], steps: &[DVector<f64>], b: &DMatrix<f6
 /// Whether a model remembers more than another: memory of effects, or joints of parts inside.
 pub(crate) fn has_memory(built: &Built, beside: &Built) -> bool {
     built.start.effects.len() > beside.start.effects.len() || built.start.q.len() > beside.start.q.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facts::{BodyFact, JointFact};
+    use spatial::Mat3;
+
+    #[test]
+    fn forces_stand_where_they_act() {
+        let joint = JointFact { name: "j".to_owned(), coordinate: 2, armature: 0.0, largest_command: 0.0 };
+        let com = Vec3::new(0.0, 0.5, 0.0);
+        let body = BodyFact {
+            name: "hull".to_owned(),
+            vehicle: 1,
+            mass: 3.0,
+            com,
+            inertia: Mat3::identity(),
+            mask: [false, false, true, true, true, false],
+            is_base: true,
+            is_torque_free: false,
+        };
+        let all = forces(&Facts { joints: vec![joint], bodies: vec![body], ..Facts::default() });
+        assert_eq!(all.iter().map(|f| f.label.as_str()).collect::<Vec<_>>(), ["", "torque z", "force x", "force y"]);
+        assert!(pushing(&all, &DVector::zeros(4)).is_none());
+        let push = pushing(&all, &DVector::from_vec(vec![0.3, 1.0, 2.0, 0.0])).expect("something pushes");
+        assert_eq!(push.joints, [0.0, 0.0, 0.3]);
+        // A force along x half a metre above the origin turns by −½ about z for each newton.
+        assert_eq!((push.bases[0], push.bases[1].force), (Wrench::default(), Vec3::new(2.0, 0.0, 0.0)));
+        assert_eq!(push.bases[1].moment, Vec3::new(0.0, 0.0, 1.0 - 2.0 * 0.5));
+    }
 }

@@ -1,7 +1,7 @@
 //! A run cut at knots, simulated interval by interval from states of their own, and made linear.
 
 use super::chain::{self, Node, Prior, Smoothed};
-use super::forces::has_memory;
+use super::forces::{Force, has_memory, pushing};
 use crate::error::DiagnoseError;
 use crate::guess::guess;
 use crate::linear::{Stage, Variation};
@@ -18,8 +18,10 @@ pub struct Interval {
     pub span: Span,
     /// The events of the tape that tell of it.
     pub members: Vec<u32>,
-    /// The state at its begin that is believed at present.
+    /// The state at its begin that is believed at present, with the forces that push it from there.
     pub start: Start,
+    /// The same forces by their number.
+    pub force: DVector<f64>,
 }
 
 /// What an interval reads, units of noise, and where it ends.
@@ -75,7 +77,7 @@ pub struct Frame<'a> {
     /// Coordinates of a state.
     pub freedoms: &'a [Freedom],
     /// An unknown force on each coordinate that moves.
-    pub forces: &'a [Variation],
+    pub forces: &'a [Force],
 }
 
 /// Coordinates of a state that intervals hand on to each other.
@@ -85,14 +87,19 @@ pub fn coordinates(built: &Built, start: &Start) -> Vec<Freedom> {
 
 impl Track {
     /// Cuts a run into so many intervals of one length, each with the state that its samples suggest.
-    pub fn cut(stage: &Stage<'_>, built: &Built, run: usize, count: usize) -> Result<Self, DiagnoseError> {
+    pub fn cut(
+        stage: &Stage<'_>,
+        (built, forces): (&Built, usize),
+        run: usize,
+        count: usize,
+    ) -> Result<Self, DiagnoseError> {
         let tape = &stage.tapes[run];
         let (from, to) = tape.span;
         let instants: Vec<f64> = (0..=count).map(|i| from + (to - from) * i as f64 / count as f64).collect();
         let members = members_between(built, tape, &instants)?;
         let interval = |(w, members): (&[f64], Vec<u32>)| {
             let span = Span { from: w[0], to: w[1] };
-            Interval { span, members, start: guess(built, tape, w[0]) }
+            Interval { span, members, start: guess(built, tape, w[0]), force: DVector::zeros(forces) }
         };
         Ok(Self { run, intervals: instants.windows(2).zip(members).map(interval).collect() })
     }
@@ -117,6 +124,12 @@ impl Frame<'_> {
         residuals.iter().all(|r| r.is_finite()).then(|| (DVector::from_vec(residuals), end))
     }
 
+    /// Adds to the forces that push an interval.
+    fn push(&self, interval: &mut Interval, by: &DVector<f64>) {
+        interval.force += by;
+        interval.start.push = pushing(self.forces, &interval.force);
+    }
+
     /// Derivatives of an interval by its state and by forces; none where its replay left the range of numbers.
     pub fn link(&self, run: usize, interval: &Interval) -> Option<Link> {
         let n_x = self.freedoms.len();
@@ -129,9 +142,14 @@ impl Frame<'_> {
             let step = freedom.first_step();
             column(self.glance(self.built, run, interval, &interval.start.moved(*freedom, step)), step)
         };
-        let by_force = |v: &Variation| column(self.glance(&v.built, run, interval, &interval.start), v.step);
+        let by_force = |j: usize| {
+            let step = self.forces[j].size;
+            let mut pushed = interval.clone();
+            self.push(&mut pushed, &DVector::from_fn(self.forces.len(), |k, _| if k == j { step } else { 0.0 }));
+            column(self.glance(self.built, run, interval, &pushed.start), step)
+        };
         let states: Vec<_> = self.freedoms.par_iter().map(by_state).collect();
-        let forces: Vec<_> = self.forces.par_iter().map(by_force).collect();
+        let forces: Vec<_> = (0..self.forces.len()).into_par_iter().map(by_force).collect();
         let (s, a) = matrices(&states, r.len(), n_x);
         let (f, b) = matrices(&forces, r.len(), n_x);
         Some(Link { s, f, a, b })
@@ -190,30 +208,52 @@ impl Frame<'_> {
 
     /// Follows a run from its first state by what its samples say (extended Kalman filter, each interval about its own estimate), and leaves the states there; the derivatives
     /// on the way, or none where a replay left the range of numbers.
-    pub fn follow(&self, track: &mut Track, prior: Prior<'_>) -> Option<Vec<Link>> {
+    pub fn follow(&self, track: &mut Track, prior: Prior<'_>, known: Option<&[Link]>) -> Option<Vec<Link>> {
         let mut links = Vec::new();
         let mut root = DMatrix::from_diagonal(prior.start);
-        let count = track.intervals.len();
-        for i in 0..count {
-            let mut passes = if i == 0 { FIRST } else { 1 };
-            let (update, end) = loop {
-                let interval = &track.intervals[i];
-                let base = self.shoot(self.built, track.run, interval, &interval.start)?;
-                let link = self.link(track.run, interval)?;
-                let update = chain::update(&alone(&link, &base.0), &root, prior);
-                passes -= 1;
-                if passes == 0 {
-                    links.push(link);
-                    break (update, base.1);
-                }
-                track.intervals[i].start = interval.start.retract(self.freedoms, update.state.as_slice());
-            };
-            if i + 1 < count {
-                track.intervals[i + 1].start = end.retract(self.freedoms, update.end.as_slice());
+        for i in 0..track.intervals.len() {
+            let known = known.map(|links| &links[i]);
+            let passed = self.pass(track.run, &mut track.intervals[i], (&root, prior), (i == 0, known))?;
+            root = passed.root;
+            links.push(passed.link);
+            let force = track.intervals[i].force.clone();
+            if let Some(next) = track.intervals.get_mut(i + 1) {
+                // It is expected to be pushed as this one is.
+                next.start = passed.end;
+                next.force.fill(0.0);
+                self.push(next, &force);
             }
-            root = update.root;
         }
         Some(links)
+    }
+
+    /// One interval of it: state and force at their best by its samples and what came before, about themselves (iterated filter: Bell and Cathey 1993).
+    fn pass(
+        &self,
+        run: usize,
+        interval: &mut Interval,
+        (root, prior): (&DMatrix<f64>, Prior<'_>),
+        (is_first, known): (bool, Option<&Link>),
+    ) -> Option<Passed> {
+        let expected = interval.start.clone();
+        let mut link = known.cloned();
+        for pass in 1.. {
+            let (r, end) = self.shoot(self.built, run, interval, &interval.start)?;
+            if link.is_none() || is_first && known.is_none() {
+                link = Some(self.link(run, interval)?);
+            }
+            let taken = link.as_ref()?;
+            let off = DVector::from_vec(expected.difference(&interval.start, self.freedoms));
+            let update = chain::update(&alone(taken, (&r, &off, &interval.force)), root, prior);
+            let (state, force) = (update.state + off, update.force - &interval.force);
+            interval.start = interval.start.retract(self.freedoms, state.as_slice());
+            self.push(interval, &force);
+            if pass == if is_first { FIRST } else { PASSES } {
+                let end = end.retract(self.freedoms, (&taken.a * state + &taken.b * force).as_slice());
+                return link.map(|link| Passed { link, end, root: update.root });
+            }
+        }
+        None
     }
 
     /// Derivatives of all intervals of a run.
@@ -221,8 +261,8 @@ impl Frame<'_> {
         track.intervals.par_iter().map(|interval| self.link(track.run, interval)).collect()
     }
 
-    /// Residuals and defects of a run beside columns of numbers.
-    pub fn sides(&self, track: &Track, bases: &Bases, columns: &[Vec<Column>]) -> Vec<Side> {
+    /// Residuals and defects of a run, as they would be without the forces that push it, beside columns of numbers.
+    pub fn sides(&self, track: &Track, links: &[Link], bases: &Bases, columns: &[Vec<Column>]) -> Vec<Side> {
         let n_x = self.freedoms.len();
         let of = |i: usize| {
             let (r, end) = &bases.exact[i];
@@ -234,8 +274,9 @@ impl Frame<'_> {
                 y.column_mut(k).copy_from(&column[i].0);
                 d.column_mut(k).copy_from(&column[i].1);
             }
-            y.column_mut(width - 1).copy_from(r);
-            d.column_mut(width - 1).copy_from_slice(&defect);
+            let (link, force) = (&links[i], &track.intervals[i].force);
+            y.column_mut(width - 1).copy_from(&(r - &link.f * force));
+            d.column_mut(width - 1).copy_from(&(DVector::from_vec(defect) - &link.b * force));
             Side { y, d }
         };
         (0..track.intervals.len()).map(of).collect()
@@ -246,17 +287,31 @@ impl Frame<'_> {
         let at = track.intervals.partition_point(|i| i.span.from <= time + SAME).max(1) - 1;
         let interval = &track.intervals[at];
         if (interval.span.from - time).abs() <= SAME {
-            return Some(interval.start.clone());
+            return Some(Start { push: None, ..interval.start.clone() });
         }
         let part = Interval { span: Span { to: time, ..interval.span }, members: Vec::new(), ..interval.clone() };
         self.shoot(self.built, track.run, &part, &part.start).map(|base| base.1)
     }
 
-    /// Moves the states of a run as a smoother says.
+    /// Half way between two courses of the same run.
+    pub fn between(&self, a: &Track, b: &Track) -> Track {
+        let mut between = a.clone();
+        for (interval, b) in between.intervals.iter_mut().zip(&b.intervals) {
+            let by = DVector::from_vec(b.start.difference(&interval.start, self.freedoms)) * 0.5;
+            interval.start = interval.start.retract(self.freedoms, by.as_slice());
+            let further = 0.5 * (&b.force - &interval.force);
+            self.push(interval, &further);
+        }
+        between
+    }
+
+    /// Moves the states of a run, and what pushes it, as a smoother says.
     pub fn moved(&self, track: &Track, smoothed: &Smoothed) -> Track {
         let mut moved = track.clone();
-        for (interval, by) in moved.intervals.iter_mut().zip(&smoothed.states) {
+        for (interval, (by, force)) in moved.intervals.iter_mut().zip(smoothed.states.iter().zip(&smoothed.forces)) {
             interval.start = interval.start.retract(self.freedoms, by.as_slice());
+            let further = force - &interval.force;
+            self.push(interval, &further);
         }
         moved
     }
@@ -267,8 +322,16 @@ pub type Column = (DVector<f64>, DVector<f64>);
 
 /// Two instants closer than this are one, s.
 const SAME: f64 = 1e-9;
-/// Passes over the first interval, whose state is only guessed.
+/// Passes over an interval, and over the first, whose state is only guessed.
+const PASSES: usize = 2;
 const FIRST: usize = 3;
+
+/// An interval that was passed: its derivatives, its end, and a root of the covariance of that.
+struct Passed {
+    link: Link,
+    end: Start,
+    root: DMatrix<f64>,
+}
 
 fn matrices(columns: &[Column], rows: usize, n_x: usize) -> (DMatrix<f64>, DMatrix<f64>) {
     let of = |rows: usize, pick: fn(&Column) -> &DVector<f64>| {
@@ -277,12 +340,13 @@ fn matrices(columns: &[Column], rows: usize, n_x: usize) -> (DMatrix<f64>, DMatr
     (of(rows, |c| &c.0), of(n_x, |c| &c.1))
 }
 
-/// An interval without numbers, its channels taken together.
-fn alone(link: &Link, r: &DVector<f64>) -> Node {
+/// An interval without numbers, its channels taken together, about the state that was expected (`off` from where its residuals were taken) and without the
+/// force that pushed it there.
+fn alone(link: &Link, (r, off, force): (&DVector<f64>, &DVector<f64>, &DVector<f64>)) -> Node {
     let (n_x, n_f) = (link.s.ncols(), link.f.ncols());
     let mut all = DMatrix::zeros(r.len(), n_x + n_f + 1);
     all.columns_mut(0, n_x).copy_from(&link.s);
     all.columns_mut(n_x, n_f).copy_from(&link.f);
-    all.column_mut(n_x + n_f).copy_from(r);
+    all.column_mut(n_x + n_f).copy_from(&(r + &link.s * off - &link.f * force));
     Node { grams: vec![(0, all.tr_mul(&all))], a: link.a.clone(), b: link.b.clone(), d: DMatrix::zeros(n_x, 1) }
 }

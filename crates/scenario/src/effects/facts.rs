@@ -32,6 +32,8 @@ pub struct ActuatorFact {
 pub struct BodyFact {
     /// Its link.
     pub name: String,
+    /// Index of its vehicle.
+    pub vehicle: usize,
     /// Mass, kg.
     pub mass: f64,
     /// Centre of mass, link frame, m.
