@@ -92,12 +92,7 @@ pub fn diagnose_with(
         None
     });
     if let Some(whole) = whole {
-        if merit(&whole.0) >= 1.0 {
-            return Ok(whole);
-        }
-        watch.step("along whole runs that explains too little: windows");
-        let found = diagnose_in_windows(scenario, set, &Work::new(watch, effort))?;
-        return Ok(if merit(&whole.0) > merit(&found.0) { whole } else { found });
+        return Ok(whole);
     }
     diagnose_in_windows(scenario, set, &Work::new(watch, effort))
 }

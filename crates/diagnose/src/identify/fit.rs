@@ -7,7 +7,7 @@
 use super::chain::Prior;
 use super::forces::{Force, first_spread, forces};
 use super::marginal::{Chain, Estimate, Linear, Spread, estimate};
-use super::track::{Bases, Column, Frame, Link, Track, coordinates};
+use super::track::{Base, Bases, Column, Frame, Link, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
@@ -85,6 +85,11 @@ const HALVINGS: usize = 4;
 const STEPS: [usize; 2] = [12, 6];
 /// Iterations of states and spread of a model without numbers.
 const SETTLING: usize = 3;
+/// Times that an interval is halved, samples of a channel that it takes, and how many times the usual mean square of a channel's residuals is
+/// missed where a force does not stay what it is.
+const HALVED: usize = 2;
+const FEWEST: f64 = 6.0;
+const UNSTEADY: f64 = 4.0;
 /// A first state is known no better than so many times what its first interval shows of it.
 const UNKNOWN: f64 = 1e4;
 /// Largest prior standard deviation of a first state's coordinate, its own unit.
@@ -165,24 +170,58 @@ impl<'a> Problem<'a> {
             covariance: DMatrix::zeros(0, 0),
             converged: false,
         };
-        self.settle(none, SETTLING, true)
+        self.refined(self.settle(none, SETTLING, false)?)
     }
 
     fn cut(&self, built: &Built, run: usize) -> Result<Track, DiagnoseError> {
         Track::cut(&self.stage, (built, self.forces.len()), run, self.knots)
     }
 
+    /// The same with intervals halved in which the missing force does not stay what it is, as far as there are samples for it.
+    fn refined(&self, mut now: Fitted) -> Result<Fitted, DiagnoseError> {
+        for _ in 0..HALVED {
+            let frame = self.frame(&now);
+            let bases: Option<Vec<Vec<Base>>> = now.tracks.par_iter().map(|t| frame.exact(t)).collect();
+            let which = self.unsteady(&now, &bases.ok_or_else(|| self.lost())?);
+            if !which.iter().flatten().any(|w| *w) {
+                break;
+            }
+            let tracks: Vec<Track> =
+                now.tracks.par_iter().zip(&which).map(|(t, w)| frame.halved(t, w)).collect::<Result<_, _>>()?;
+            now = self.settle(Fitted { tracks, links: Vec::new(), ..now }, SETTLING, false)?;
+        }
+        Ok(now)
+    }
+
+    /// Intervals in which a channel is missed by far more than in most of them.
+    fn unsteady(&self, now: &Fitted, bases: &[Vec<Base>]) -> Vec<Vec<bool>> {
+        let squares = |(channels, bases): (&Vec<Vec<u16>>, &Vec<Base>)| -> Vec<Vec<(f64, f64)>> {
+            let of = |(own, base): (&Vec<u16>, &Base)| {
+                let mut sums = vec![(0.0, 0.0); self.channels.len()];
+                for (c, r) in own.iter().zip(base.0.iter()) {
+                    let sum = &mut sums[*c as usize];
+                    *sum = (sum.0 + r * r, sum.1 + 1.0);
+                }
+                sums.iter().map(|(square, n)| (square / f64::max(*n, 1.0), *n)).collect()
+            };
+            channels.iter().zip(bases).map(of).collect()
+        };
+        let all: Vec<Vec<Vec<(f64, f64)>>> = self.channels_of(&now.tracks).iter().zip(bases).map(squares).collect();
+        let usual = |c: usize| {
+            let mut own: Vec<f64> = all.iter().flatten().filter(|s| s[c].1 > 0.0).map(|s| s[c].0).collect();
+            own.sort_by(f64::total_cmp);
+            own.get(own.len() / 2).copied().unwrap_or(1.0).max(1.0)
+        };
+        let usual: Vec<f64> = (0..self.channels.len()).map(usual).collect();
+        let is_missed = |s: &Vec<(f64, f64)>| {
+            s.iter().zip(&usual).any(|((mean, n), usual)| *n >= FEWEST && *mean > UNSTEADY * usual)
+        };
+        all.iter().map(|run| run.iter().map(is_missed).collect()).collect()
+    }
+
     /// The same fit on other samples of the same runs.
     pub fn onto(&self, of: &Fitted) -> Result<Fitted, DiagnoseError> {
-        let cut = |track: &Track| -> Result<Track, DiagnoseError> {
-            let mut fresh = self.cut(&of.built, track.run)?;
-            for (own, known) in fresh.intervals.iter_mut().zip(&track.intervals) {
-                own.start.clone_from(&known.start);
-                own.force.clone_from(&known.force);
-            }
-            Ok(fresh)
-        };
-        let tracks = of.tracks.iter().map(cut).collect::<Result<_, _>>()?;
+        let tracks = of.tracks.iter().map(|t| t.onto(&self.stage, &of.built)).collect::<Result<_, _>>()?;
         Ok(Fitted { tracks, links: Vec::new(), ..of.clone() })
     }
 

@@ -103,6 +103,16 @@ impl Track {
         };
         Ok(Self { run, intervals: instants.windows(2).zip(members).map(interval).collect() })
     }
+
+    /// The same intervals with the events of another tape of the run.
+    pub fn onto(&self, stage: &Stage<'_>, built: &Built) -> Result<Self, DiagnoseError> {
+        let begins = self.intervals.iter().map(|i| i.span.from);
+        let instants: Vec<f64> = begins.chain(self.intervals.last().map(|i| i.span.to)).collect();
+        let mut onto = self.clone();
+        let members = members_between(built, &stage.tapes[self.run], &instants)?;
+        onto.intervals.iter_mut().zip(members).for_each(|(interval, own)| interval.members = own);
+        Ok(onto)
+    }
 }
 
 impl Frame<'_> {
@@ -194,13 +204,16 @@ impl Frame<'_> {
         carried
     }
 
-    /// What the present model reads in every interval, and where each ends; none where a replay left the range of numbers.
+    /// What the present model reads in every interval, as exactly as it is judged.
+    pub fn exact(&self, track: &Track) -> Option<Vec<Base>> {
+        track.intervals.par_iter().map(|i| self.shoot(self.built, track.run, i, &i.start)).collect()
+    }
+
+    /// The same as derivatives are taken too, and where each ends; none where a replay left the range of numbers.
     pub fn bases(&self, track: &Track) -> Option<Bases> {
-        let all = || track.intervals.par_iter();
-        let exact: Option<Vec<Base>> = all().map(|i| self.shoot(self.built, track.run, i, &i.start)).collect();
-        let exact = exact?;
+        let exact = self.exact(track)?;
         let glanced: Option<Vec<Base>> = match self.built.model.is_smooth() {
-            true => all().map(|i| self.glance(self.built, track.run, i, &i.start)).collect(),
+            true => track.intervals.par_iter().map(|i| self.glance(self.built, track.run, i, &i.start)).collect(),
             false => Some(exact.clone()),
         };
         Some(Bases { exact, glanced: glanced? })
@@ -291,6 +304,21 @@ impl Frame<'_> {
         }
         let part = Interval { span: Span { to: time, ..interval.span }, members: Vec::new(), ..interval.clone() };
         self.shoot(self.built, track.run, &part, &part.start).map(|base| base.1)
+    }
+
+    /// The same run with some intervals halved, the second half from where the first one ends.
+    pub fn halved(&self, track: &Track, which: &[bool]) -> Result<Track, DiagnoseError> {
+        let half = |(interval, is_halved): (&Interval, &bool)| {
+            let middle = 0.5 * (interval.span.from + interval.span.to);
+            let state = is_halved.then(|| self.state_at(track, middle)).flatten();
+            let Some(state) = state else { return vec![interval.clone()] };
+            let [mut first, mut second] = [interval.clone(), interval.clone()];
+            (first.span.to, second.span.from) = (middle, middle);
+            second.start = Start { push: interval.start.push.clone(), ..state };
+            vec![first, second]
+        };
+        let intervals = track.intervals.iter().zip(which).flat_map(half).collect();
+        Track { run: track.run, intervals }.onto(self.stage, self.built)
     }
 
     /// Half way between two courses of the same run.

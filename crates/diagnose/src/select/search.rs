@@ -51,8 +51,6 @@ const AT_ONCE: usize = 3;
 const FITTED: usize = 4;
 /// Share of the best promise below which a set is not fitted.
 const PROMISING: f64 = 0.6;
-/// Share of what the nominal model leaves beyond noise that a set may leave for a search to go on.
-const MOST_LEFT: f64 = 0.4;
 /// Iterations of a first fit, and to the end.
 const LOOK: Reach = Reach { iterations: 6, reuse: true };
 const END: Reach = Reach { iterations: 6, reuse: false };
@@ -99,10 +97,6 @@ pub fn search(
         now = problem.fit(&best, best.set.clone(), END).unwrap_or(best);
         now = without_idle(problem, now, many)?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
-        // Where most is left the motion is not what intervals without the missing force make of it: more effects would stand for that.
-        if now.score - (found.nominal.score - found.left) > MOST_LEFT * found.left {
-            break;
-        }
     }
     found.best = now;
     Ok(found)
@@ -236,6 +230,8 @@ fn linear_sets(
     let ground = Ground { runs: &made.runs, ridge: &ridge, pool: &pool, active: slots.len(), count: made.count };
     let sets = ground.grow(&none, most);
     watch.step("sets grown");
+    if std::env::var("DBG").is_ok() { eprintln!("none {:.1} left {:.1}", none.score, sets.left); for s in sets.scores.iter().take(25) { let h = &pool.hypotheses[s.hypothesis]; eprintln!("  {} p{} {:.1} {:?}", h.title(), s.point, s.score, s.start); }
+      for s in sets.sets.iter().take(12) { eprintln!("  set {:?} crit {:.1} score {:.1} left {:.1} q {:?}", s.members.iter().map(|m| (pool.of(m.0).title(), m.1.clone())).collect::<Vec<_>>(), s.criterion - none.score, s.score - none.score, s.left, s.spread.force.as_slice()); } }
     Ok((pool, sets))
 }
 
