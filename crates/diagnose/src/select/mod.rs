@@ -6,5 +6,6 @@
 //!   −2 log L(θ̂, q̂, κ̂) + d ln N − 2 log prior        (BIC: Schwarz 1978)
 
 pub mod pool;
+pub mod regression;
 pub mod search;
 pub mod sets;

@@ -1,13 +1,14 @@
 //! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
 
 use super::pool::{Pool, price};
+use super::regression::{Regression, Spoken};
 use super::sets::{FURTHER, Ground, Grown, LinearSet};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach, ridge_of};
-use crate::identify::marginal::{Spread, estimate, score};
+use crate::identify::marginal::{Chain, Spread, estimate, score};
 use crate::screen::Score;
 use crate::standing::told;
 use crate::work::Until;
@@ -49,6 +50,8 @@ const MOST: usize = 6;
 const AT_ONCE: usize = 3;
 /// Sets that are fitted in full simulation in a round.
 const FITTED: usize = 4;
+/// Single effects among them that the missing force speaks for.
+const SPOKEN: usize = 2;
 /// Share of the best promise below which a set is not fitted.
 const PROMISING: f64 = 0.6;
 /// Iterations of a first fit, and to the end.
@@ -83,12 +86,12 @@ pub fn search(
         if problem.stage.work.is_spent(Until::Search) {
             break;
         }
-        let (pool, grown) = linear_sets(problem, &mut now, all, room.min(AT_ONCE))?;
+        let (pool, grown, spoken) = linear_sets(problem, &mut now, all, room.min(AT_ONCE))?;
         if round == 0 {
             (found.shown, found.left) = (shown(&pool, &grown), grown.left);
         }
         let bounds = Bounds { round, many, cheapest };
-        let best = fit_sets(problem, &now, (&pool, &grown.sets), bounds, &mut found.tried)?;
+        let best = fit_sets(problem, &now, (&pool, &grown.sets, &spoken), bounds, &mut found.tried)?;
         let Some(best) = best else { break };
         // What takes little of what an accepted set leaves stands for something that is not in the library.
         if round > 0 && now.score - best.score < FURTHER * grown.left {
@@ -116,14 +119,14 @@ struct Bounds {
 fn fit_sets(
     problem: &Problem<'_>,
     now: &Fitted,
-    (pool, sets): (&Pool, &[LinearSet]),
+    (pool, sets, spoken): (&Pool, &[LinearSet], &[Spoken]),
     Bounds { round, many, cheapest }: Bounds,
     tried: &mut Vec<Tried>,
 ) -> Result<Option<Fitted>, DiagnoseError> {
     let before = criterion(now, many);
     let mut best: Option<Fitted> = None;
     let mut enough: Vec<Vec<String>> = Vec::new();
-    for set in chosen(sets, now.score) {
+    for set in chosen(pool, now, (sets, spoken)) {
         if problem.stage.work.is_spent(Until::Search) {
             break;
         }
@@ -216,7 +219,7 @@ fn linear_sets(
     now: &mut Fitted,
     all: Vec<Hypothesis>,
     most: usize,
-) -> Result<(Pool, Grown), DiagnoseError> {
+) -> Result<(Pool, Grown, Vec<Spoken>), DiagnoseError> {
     let slots = now.set.slots();
     let active = vary(problem.plant, &now.set, &slots, &first_sizes(&now.set))?;
     let pool = Pool::new(problem.plant, &now.set, all)?;
@@ -226,22 +229,49 @@ fn linear_sets(
     let made = problem.linearise(now, &variations, true)?;
     watch.step("columns taken");
     let ridge = ridge_of(&now.set, slots.len());
-    let none = estimate(&made.chains(&(0..slots.len()).collect::<Vec<_>>()), Some(&ridge), &now.spread, 2);
+    let chains = made.chains(&(0..slots.len()).collect::<Vec<_>>());
+    let none = estimate(&chains, Some(&ridge), &now.spread, 2);
+    let smoothed = |chain: &Chain| {
+        let found = chain.smoothed(&none.spread, &none.theta);
+        (found.forces, found.variances)
+    };
+    let forces: Vec<_> = chains.iter().map(smoothed).collect();
+    let spoken = Regression::new(&pool, (&made.runs, slots.len(), made.count), &forces).grow(most);
     let ground = Ground { runs: &made.runs, ridge: &ridge, pool: &pool, active: slots.len(), count: made.count };
     let sets = ground.grow(&none, most);
     watch.step("sets grown");
-    if std::env::var("DBG").is_ok() { eprintln!("none {:.1} left {:.1}", none.score, sets.left); for s in sets.scores.iter().take(25) { let h = &pool.hypotheses[s.hypothesis]; eprintln!("  {} p{} {:.1} {:?}", h.title(), s.point, s.score, s.start); }
-      for s in sets.sets.iter().take(12) { eprintln!("  set {:?} crit {:.1} score {:.1} left {:.1} q {:?}", s.members.iter().map(|m| (pool.of(m.0).title(), m.1.clone())).collect::<Vec<_>>(), s.criterion - none.score, s.score - none.score, s.left, s.spread.force.as_slice()); } }
-    Ok((pool, sets))
+    Ok((pool, sets, spoken))
 }
 
-/// The sets that are worth a fit: those that promise most by the criterion, smaller ones first.
-fn chosen(sets: &[LinearSet], before: f64) -> Vec<&LinearSet> {
-    let most = sets.iter().map(|s| before - s.score).fold(0.0, f64::max);
-    let worth = |s: &&LinearSet| before - s.score >= PROMISING * most;
-    let mut chosen: Vec<&LinearSet> = sets.iter().filter(worth).take(FITTED).collect();
-    let single = sets.iter().find(|s| s.members.len() == 1).filter(|s| !chosen.iter().any(|c| std::ptr::eq(*c, *s)));
-    chosen.extend(single);
+/// The sets that are worth a fit: those that promise most by the criterion, of the chain and of the missing force, smaller ones first.
+fn chosen(pool: &Pool, now: &Fitted, (sets, spoken): (&[LinearSet], &[Spoken])) -> Vec<LinearSet> {
+    let most = sets.iter().map(|s| now.score - s.score).fold(0.0, f64::max);
+    let worth = |s: &&LinearSet| now.score - s.score >= PROMISING * most;
+    let mut chosen: Vec<LinearSet> = sets.iter().filter(worth).take(FITTED).cloned().collect();
+    let titles = |s: &LinearSet| {
+        let mut titles: Vec<String> = s.members.iter().map(|m| pool.of(m.0).title()).collect();
+        titles.sort();
+        titles
+    };
+    let single = sets.iter().find(|s| s.members.len() == 1).cloned();
+    let as_linear = |s: &Spoken| LinearSet {
+        members: s.members.clone(),
+        criterion: now.score + s.criterion,
+        score: now.score + s.change,
+        left: f64::NAN,
+        spread: now.spread.clone(),
+    };
+    let most = spoken.iter().map(|s| -s.change).fold(0.0, f64::max);
+    let spoken = (1..=AT_ONCE).flat_map(|size| {
+        let own = spoken.iter().filter(move |s| s.members.len() == size && -s.change >= PROMISING * most);
+        own.take(if size == 1 { SPOKEN } else { 1 })
+    });
+    let spoken = spoken.map(as_linear);
+    for set in spoken.chain(single) {
+        if !chosen.iter().any(|c| titles(c) == titles(&set)) {
+            chosen.push(set);
+        }
+    }
     chosen.sort_by_key(|s| s.members.len());
     chosen
 }
