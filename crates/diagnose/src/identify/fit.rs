@@ -75,7 +75,7 @@ pub struct Reach {
 }
 
 /// Intervals of a run, and samples of its sparsest reading that each has.
-const KNOTS: std::ops::RangeInclusive<usize> = 24..=96;
+const KNOTS: std::ops::RangeInclusive<usize> = 24..=48;
 const SAMPLES: usize = 12;
 /// Promised fall of −2 log likelihood below which a fit has converged.
 const CONVERGED: f64 = 0.3;
@@ -87,7 +87,7 @@ const STEPS: [usize; 2] = [12, 6];
 const SETTLING: usize = 3;
 /// Times that an interval is halved, samples of a channel that it takes, and how many times the usual mean square of a channel's residuals is
 /// missed where a force does not stay what it is.
-const HALVED: usize = 2;
+const HALVED: usize = 3;
 const FEWEST: f64 = 6.0;
 const UNSTEADY: f64 = 4.0;
 /// A first state is known no better than so many times what its first interval shows of it.

@@ -247,13 +247,11 @@ fn linear_sets(
 fn chosen(pool: &Pool, now: &Fitted, (sets, spoken): (&[LinearSet], &[Spoken])) -> Vec<LinearSet> {
     let most = sets.iter().map(|s| now.score - s.score).fold(0.0, f64::max);
     let worth = |s: &&LinearSet| now.score - s.score >= PROMISING * most;
-    let mut chosen: Vec<LinearSet> = sets.iter().filter(worth).take(FITTED).cloned().collect();
     let titles = |s: &LinearSet| {
         let mut titles: Vec<String> = s.members.iter().map(|m| pool.of(m.0).title()).collect();
         titles.sort();
         titles
     };
-    let single = sets.iter().find(|s| s.members.len() == 1).cloned();
     let as_linear = |s: &Spoken| LinearSet {
         members: s.members.clone(),
         criterion: now.score + s.criterion,
@@ -261,13 +259,15 @@ fn chosen(pool: &Pool, now: &Fitted, (sets, spoken): (&[LinearSet], &[Spoken])) 
         left: f64::NAN,
         spread: now.spread.clone(),
     };
-    let most = spoken.iter().map(|s| -s.change).fold(0.0, f64::max);
+    let loudest = spoken.iter().map(|s| -s.change).fold(0.0, f64::max);
     let spoken = (1..=AT_ONCE).flat_map(|size| {
-        let own = spoken.iter().filter(move |s| s.members.len() == size && -s.change >= PROMISING * most);
+        let own = spoken.iter().filter(move |s| s.members.len() == size && -s.change >= PROMISING * loudest);
         own.take(if size == 1 { SPOKEN } else { 1 })
     });
-    let spoken = spoken.map(as_linear);
-    for set in spoken.chain(single) {
+    let single = sets.iter().find(|s| s.members.len() == 1);
+    let mut chosen: Vec<LinearSet> = Vec::new();
+    // What the missing force says of a law is nearer to it where no line follows that.
+    for set in spoken.map(as_linear).chain(sets.iter().filter(worth).take(FITTED).chain(single).cloned()) {
         if !chosen.iter().any(|c| titles(c) == titles(&set)) {
             chosen.push(set);
         }
