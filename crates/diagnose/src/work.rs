@@ -14,7 +14,7 @@ pub trait Watch: Sync {
 impl Watch for () {}
 
 /// What a search may do, in evaluations of the motion of one body: two to four minutes on two cores.
-const USUAL: f64 = 8e8;
+const USUAL: f64 = 4e8;
 /// What testing two shapes for contact costs, in such evaluations.
 const QUERY: u64 = 2;
 
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn a_search_ends_before_its_fits_do_and_both_by_counts() {
         let work = Work::new(&(), 1e-6);
-        assert_eq!(work.limit, 800);
+        assert_eq!(work.limit, 400);
         let of =
             |rate_evaluations, contact_queries| sim::Work { rate_evaluations, contact_queries, ..Default::default() };
         work.add(0.5, 7, &of(40, 0));

@@ -2,13 +2,13 @@
 
 use super::pool::{Pool, price};
 use super::regression::{Regression, Spoken};
-use super::sets::{FURTHER, Ground, Grown, LinearSet};
+use super::sets::{Ground, Grown, LinearSet};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach, ridge_of};
-use crate::identify::marginal::{Chain, Spread, estimate, score};
+use crate::identify::marginal::{Chain, Spread, estimate, products, score, sum};
 use crate::screen::Score;
 use crate::standing::told;
 use crate::work::Until;
@@ -48,6 +48,9 @@ pub struct Tried {
 /// Effects at most, and how many the linear model may add at once.
 const MOST: usize = 6;
 const AT_ONCE: usize = 3;
+/// Share of what there is beyond noise that is next to nothing, and of what a set leaves that one more effect has to take.
+const LITTLE: f64 = 0.05;
+const MOST_OF: f64 = 0.5;
 /// Sets that are fitted in full simulation in a round.
 const FITTED: usize = 4;
 /// Single effects among them that the missing force speaks for.
@@ -56,7 +59,10 @@ const SPOKEN: usize = 2;
 const PROMISING: f64 = 0.6;
 /// Iterations of a first fit, and to the end.
 const LOOK: Reach = Reach { iterations: 6, reuse: true };
+const GLANCE: Reach = Reach { iterations: 3, reuse: true };
 const END: Reach = Reach { iterations: 6, reuse: false };
+/// Criterion by which a set is far from what it was.
+const FAR: f64 = 1000.0;
 /// Rise of the likelihood without a joint's unknown force, as a share of the largest, below which nothing is missing there.
 const DULL: f64 = 0.003;
 
@@ -90,11 +96,11 @@ pub fn search(
         if round == 0 {
             (found.shown, found.left) = (shown(&pool, &grown), grown.left);
         }
-        let bounds = Bounds { round, many, cheapest };
+        let bounds = Bounds { round, many, cheapest, all: grown.left };
         let best = fit_sets(problem, &now, (&pool, &grown.sets, &spoken), bounds, &mut found.tried)?;
         let Some(best) = best else { break };
         // What takes little of what an accepted set leaves stands for something that is not in the library.
-        if round > 0 && now.score - best.score < FURTHER * grown.left {
+        if round > 0 && now.score - best.score < MOST_OF * grown.left {
             break;
         }
         now = problem.fit(&best, best.set.clone(), END).unwrap_or(best);
@@ -113,6 +119,15 @@ struct Bounds {
     many: usize,
     /// Price of the cheapest effect.
     cheapest: f64,
+    /// What there is beyond noise.
+    all: f64,
+}
+
+/// A set that was fitted, and what it leaves beyond noise.
+struct Smaller {
+    titles: Vec<String>,
+    score: f64,
+    beyond: f64,
 }
 
 /// Fits the sets that promise most in full simulation; the best of them where it is worth its price.
@@ -120,12 +135,13 @@ fn fit_sets(
     problem: &Problem<'_>,
     now: &Fitted,
     (pool, sets, spoken): (&Pool, &[LinearSet], &[Spoken]),
-    Bounds { round, many, cheapest }: Bounds,
+    Bounds { round, many, cheapest, all }: Bounds,
     tried: &mut Vec<Tried>,
 ) -> Result<Option<Fitted>, DiagnoseError> {
     let before = criterion(now, many);
     let mut best: Option<Fitted> = None;
     let mut enough: Vec<Vec<String>> = Vec::new();
+    let mut smaller: Vec<Smaller> = Vec::new();
     for set in chosen(pool, now, (sets, spoken)) {
         if problem.stage.work.is_spent(Until::Search) {
             break;
@@ -140,15 +156,20 @@ fn fit_sets(
         let Ok(fit) = problem.fit(&start, members, LOOK) else { continue };
         let after = criterion(&fit, many);
         let (promised, brought) = (now.score - set.score, now.score - fit.score);
+        let left = remainder(problem, &fit)?;
         let (names, gain) = (names(&fit.set), after - before);
         let said = format!("  {names}: promised {promised:.1}, brought {brought:.1}, criterion {gain:.1}");
         problem.stage.work.watch.step(&said);
-        if remainder(problem, &fit)?.rise < cheapest {
+        if left.rise < cheapest || left.beyond < LITTLE * all {
             enough.push(added.clone());
         }
+        // What a set adds to a smaller one has to take most of what that leaves.
+        let is_idle = |known: &Smaller| known.titles.iter().all(|t| added.contains(t)) && known.score - fit.score < MOST_OF * known.beyond;
+        let is_idle = smaller.iter().any(is_idle);
+        smaller.push(Smaller { titles: added.clone(), score: fit.score, beyond: left.beyond });
         let scores = [now.score, fit.score];
         tried.push(Tried { round, set: fit.set.clone(), added, scores, criteria: [before, after], promised });
-        if after < best.as_ref().map_or(before, |b| criterion(b, many)) {
+        if !is_idle && after < best.as_ref().map_or(before, |b| criterion(b, many)) {
             best = Some(fit);
         }
     }
@@ -162,6 +183,8 @@ pub struct Remainder {
     pub rise: f64,
     /// What noise alone exceeds with a probability of one in a hundred.
     pub bound: f64,
+    /// −2 log likelihood beyond that of a model which leaves noise alone.
+    pub beyond: f64,
 }
 
 /// Likelihood ratio of unknown forces and further noise.
@@ -179,7 +202,8 @@ pub fn remainder(problem: &Problem<'_>, fit: &Fitted) -> Result<Remainder, Diagn
     // A gamma distribution of that mean and variance: the cube root is nearly normal.
     let shape = mean * mean / variance;
     let bound = mean * (1.0 - 1.0 / (9.0 * shape) + ONE_IN_HUNDRED / (9.0 * shape).sqrt()).powi(3);
-    Ok(Remainder { rise: at(&silent) - at(&fit.spread), bound })
+    let noise = sum(&products(&chains, &silent)).log_det + made.count as f64;
+    Ok(Remainder { rise: at(&silent) - at(&fit.spread), bound, beyond: at(&fit.spread) - noise })
 }
 
 /// Normal score that is exceeded once in a hundred times.
@@ -281,7 +305,12 @@ fn without_idle(problem: &Problem<'_>, mut now: Fitted, many: usize) -> Result<F
     while now.set.findings().count() > 1 {
         let mut better = None;
         for m in (0..now.set.members.len()).rev().filter(|m| !now.set.members[*m].0.is_tolerated()) {
-            let Ok(less) = problem.fit(&now, now.set.without(m), LOOK) else { continue };
+            let Ok(glance) = problem.fit(&now, now.set.without(m), GLANCE) else { continue };
+            // What is worse by far after two steps does not come back.
+            if criterion(&glance, many) - criterion(&now, many) > FAR {
+                continue;
+            }
+            let Ok(less) = problem.fit(&glance, glance.set.clone(), LOOK) else { continue };
             if criterion(&less, many) < better.as_ref().map_or(criterion(&now, many), |b| criterion(b, many)) {
                 better = Some(less);
             }

@@ -59,7 +59,7 @@ pub struct Ground<'a> {
 const ESTIMATED: usize = 8;
 const GROWN: usize = 2;
 /// Share of what the best smaller set leaves beyond noise that one more effect has to take away.
-pub(super) const FURTHER: f64 = 0.3;
+const FURTHER: f64 = 0.3;
 /// Entries that take part in sets of two and more: the best by themselves.
 const TAKING_PART: usize = 30;
 /// Steps of a spread.
