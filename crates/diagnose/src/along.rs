@@ -10,7 +10,7 @@ use crate::identify::track::Frame;
 use crate::linear::{Segment, Stage, Steps};
 use crate::plant::{Built, Plant};
 use crate::replay::Span;
-use crate::select::search::{Found, Remainder, hypotheses_of, remainder, search};
+use crate::select::search::{Found, NEXT_TO_NOTHING, Remainder, hypotheses_of, remainder, search};
 use record::Role;
 use std::sync::Arc;
 
@@ -65,7 +65,11 @@ pub(crate) fn fit_to_all(
     if !best.set.has_findings() || scalars(all) <= scalars(thin) || scalars(all) > MOST {
         return Ok(course);
     }
+    // Where forces are left they are what limits the numbers, not how many samples there are.
     let problem = problem(all, plant, own, Role::Fit);
+    if problem.power(best) > NEXT_TO_NOTHING * problem.power(&course.found.nominal) {
+        return Ok(course);
+    }
     let best = problem.fit(&problem.onto(best)?, best.set.clone(), LAST)?;
     let left = [course.left[0], remainder(&problem, &best)?];
     Ok(Course { found: Found { best, ..course.found }, left })

@@ -92,13 +92,35 @@ pub fn diagnose_with(
         None
     });
     if let Some(whole) = whole {
-        return Ok(whole);
+        if is_near_noise(&whole.0) {
+            return Ok(whole);
+        }
+        watch.step("what whole runs leave is far beyond noise: windows");
+        let found = diagnose_in_windows(scenario, set, &Work::new(watch, effort))?;
+        return Ok(if is_clearly_better(&whole.0, &found.0) { whole } else { found });
     }
     diagnose_in_windows(scenario, set, &Work::new(watch, effort))
 }
 
 /// What may be done along whole runs, relative to the usual: there it is all that is done.
 const ALONG: f64 = 2.0;
+
+/// Whether a likelihood of samples is to be believed: all is explained, or what is left is of the size of noise. Far beyond it the laws that were found are off by
+/// more than noise at every sample, and what is likeliest sample by sample is decided by where they are off most.
+fn is_near_noise(diagnosis: &Diagnosis) -> bool {
+    let has_effects = !diagnosis.effects.is_empty();
+    merit(diagnosis) >= 1.0 || has_effects && diagnosis.error.windowed.after < NEAR_NOISE
+}
+
+/// Whether a diagnosis explains more than another one by more than the runs tell exactly.
+fn is_clearly_better(one: &Diagnosis, other: &Diagnosis) -> bool {
+    let interval = |d: &Diagnosis| d.explained_share.as_ref().map_or([0.0; 2], |e| e.interval);
+    let overlaps = interval(one)[0] <= interval(other)[1];
+    merit(one) > merit(other) && !(overlaps && merit(other) >= SETTLED)
+}
+
+/// Error over windows, units of noise, up to which what is left is of the size of noise.
+const NEAR_NOISE: f64 = 10.0;
 
 /// The same in windows of one length, and of another where that explains too little.
 fn diagnose_in_windows(

@@ -6,7 +6,7 @@
 
 use super::chain::Prior;
 use super::forces::{Force, first_spread, forces};
-use super::marginal::{Chain, Estimate, Linear, Spread, estimate};
+use super::marginal::{Chain, Estimate, Linear, Spread, estimate, score};
 use super::track::{Base, Bases, Column, Frame, Link, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
@@ -90,6 +90,8 @@ const SETTLING: usize = 3;
 const HALVED: usize = 3;
 const FEWEST: f64 = 6.0;
 const UNSTEADY: f64 = 4.0;
+/// Largest factor of a mean square that a wrong figure of the noise may stand for.
+const WRONG: f64 = 4.0;
 /// A first state is known no better than so many times what its first interval shows of it.
 const UNKNOWN: f64 = 1e4;
 /// Largest prior standard deviation of a first state's coordinate, its own unit.
@@ -193,7 +195,7 @@ impl<'a> Problem<'a> {
         Ok(now)
     }
 
-    /// Intervals in which a channel is missed by far more than in most of them.
+    /// Intervals in which a channel is missed by far more than its noise, as most of them show that.
     fn unsteady(&self, now: &Fitted, bases: &[Vec<Base>]) -> Vec<Vec<bool>> {
         let squares = |(channels, bases): (&Vec<Vec<u16>>, &Vec<Base>)| -> Vec<Vec<(f64, f64)>> {
             let of = |(own, base): (&Vec<u16>, &Base)| {
@@ -210,7 +212,7 @@ impl<'a> Problem<'a> {
         let usual = |c: usize| {
             let mut own: Vec<f64> = all.iter().flatten().filter(|s| s[c].1 > 0.0).map(|s| s[c].0).collect();
             own.sort_by(f64::total_cmp);
-            own.get(own.len() / 2).copied().unwrap_or(1.0).max(1.0)
+            own.get(own.len() / 2).copied().unwrap_or(1.0).clamp(1.0, WRONG)
         };
         let usual: Vec<f64> = (0..self.channels.len()).map(usual).collect();
         let is_missed = |s: &Vec<(f64, f64)>| {
@@ -264,7 +266,7 @@ impl<'a> Problem<'a> {
     pub fn fit(&self, from: &Fitted, set: EffectSet, reach: Reach) -> Result<Fitted, DiagnoseError> {
         let mut now = self.with(from, set)?;
         if now.set.titles() != from.set.titles() {
-            self.follow(&mut now)?;
+            now = self.followed(from, now)?;
         }
         let slots = now.set.slots();
         if slots.is_empty() {
@@ -308,6 +310,21 @@ impl<'a> Problem<'a> {
             Some(last) if now.score.is_nan() || now.score > last.score + CONVERGED => Ok(last),
             _ => Ok(now),
         }
+    }
+
+    /// The runs of another fit followed by a model: with the derivatives that are known, and with its own where those lead astray.
+    fn followed(&self, from: &Fitted, with: Fitted) -> Result<Fitted, DiagnoseError> {
+        let mut now = with.clone();
+        let is_near = self.follow(&mut now).and_then(|()| {
+            let made = self.linearise(&mut now, &[], true)?;
+            Ok(score(&made.chains(&[]), &now.spread) < score_beyond(from))
+        });
+        if is_near.unwrap_or(false) {
+            return Ok(now);
+        }
+        now = Fitted { links: Vec::new(), ..with };
+        self.follow(&mut now)?;
+        Ok(now)
     }
 
     /// Lets the runs be followed by another model than that which their states are of: what pushed them, pushes it no more or more.
@@ -387,6 +404,16 @@ impl<'a> Problem<'a> {
         Ok(Made { runs, count })
     }
 
+    /// What the unknown forces of a fit do to the readings, mean square over intervals, units of noise.
+    pub fn power(&self, of: &Fitted) -> f64 {
+        let own = |(interval, link): (&super::track::Interval, &Link)| -> f64 {
+            let each = interval.force.iter().zip(link.f.column_iter());
+            each.map(|(force, column)| force * force * column.norm_squared()).sum()
+        };
+        let pairs = || of.tracks.iter().zip(&of.links).flat_map(|(t, l)| t.intervals.iter().zip(l.iter()));
+        pairs().map(own).sum::<f64>() / pairs().count().max(1) as f64
+    }
+
     /// The runs of a fit with their states where the smoother has them.
     fn moved(&self, now: &Fitted, chains: &[Chain], found: &Estimate) -> Vec<Track> {
         let frame = self.frame(now);
@@ -394,6 +421,14 @@ impl<'a> Problem<'a> {
         now.tracks.par_iter().zip(chains).map(of).collect()
     }
 }
+
+/// Where a set that is begun well stands at most beside what it comes from.
+fn score_beyond(from: &Fitted) -> f64 {
+    from.score + ASTRAY * from.count as f64
+}
+
+/// Rise of −2 log likelihood by residual with which derivatives have led astray.
+const ASTRAY: f64 = 0.1;
 
 /// All runs made linear.
 pub struct Made {

@@ -19,13 +19,13 @@ pub struct Regression<'a> {
     pool: &'a Pool,
     /// Residuals of the runs, for prices.
     count: usize,
-    /// Coordinate by coordinate over all intervals, by what a force there does to the readings: what is missing, its variance, and the columns' forces.
+    /// Coordinate by coordinate over all intervals, by what a force there does to the readings: what is missing, its variances, and the columns' forces.
     coordinates: Vec<Coordinate>,
 }
 
 struct Coordinate {
     missing: DVector<f64>,
-    variance: f64,
+    variance: DVector<f64>,
     columns: DMatrix<f64>,
 }
 
@@ -77,7 +77,7 @@ impl<'a> Regression<'a> {
             let size = (links().map(|l| l.f.column(j).norm_squared()).sum::<f64>() / flat.len().max(1) as f64).sqrt();
             Coordinate {
                 missing: DVector::from_iterator(flat.len(), flat.iter().map(|p| size * p.0[j])),
-                variance: size * size * flat.iter().map(|p| p.1[j]).sum::<f64>() / flat.len().max(1) as f64,
+                variance: DVector::from_iterator(flat.len(), flat.iter().map(|p| size * size * p.1[j])),
                 columns: DMatrix::from_fn(parts.len(), columns, |i, c| size * parts[i][(j, c)]),
             }
         };
@@ -158,25 +158,35 @@ impl<'a> Regression<'a> {
             let rest: Vec<DVector<f64>> =
                 self.coordinates.iter().zip(&w).map(|(c, w)| &c.missing - w * &theta).collect();
             for (j, c) in self.coordinates.iter().enumerate() {
-                let floor = c.variance + OFF * OFF * all + f64::MIN_POSITIVE;
                 let weight = |s: f64, r: f64| (TAILS + 1.0) / (TAILS + r * r / s);
                 if step > 0 {
-                    let s = squares[j].max(floor);
-                    let sum: f64 = rest[j].iter().map(|r| weight(s, *r) * r * r).sum();
-                    squares[j] = sum / c.missing.len().max(1) as f64;
+                    // What the law leaves beyond the smoother's own variance; an interval that nothing shows says nothing of it.
+                    let (mut sum, mut count) = (0.0, f64::MIN_POSITIVE);
+                    for (r, v) in rest[j].iter().zip(c.variance.iter()) {
+                        let s = squares[j] + v;
+                        let says = (squares[j] / s).powi(2);
+                        sum += says * (weight(s, *r) * r * r - v);
+                        count += says;
+                    }
+                    squares[j] = sum / count;
                 }
-                squares[j] = squares[j].max(floor);
+                squares[j] = squares[j].max(OFF * OFF * all + f64::MIN_POSITIVE);
                 for (i, r) in rest[j].iter().enumerate() {
                     let row = w[j].row(i).transpose();
-                    let by = if step == 0 { 1.0 } else { weight(squares[j], *r) } / squares[j];
+                    let s = squares[j] + c.variance[i];
+                    let by = if step == 0 { 1.0 } else { weight(s, *r) } / s;
                     a.ger(by, &row, &row, 1.0);
                     b.axpy(by * c.missing[i], &row, 1.0);
                 }
             }
-            let likelihood = |(s, rest): (&f64, &DVector<f64>)| -> f64 {
-                rest.iter().map(|r| s.ln() + (TAILS + 1.0) * (1.0 + r * r / (TAILS * s)).ln()).sum()
+            let likelihood = |(j, rest): (usize, &DVector<f64>)| -> f64 {
+                let of = |(r, v): (&f64, &f64)| {
+                    let s = squares[j] + v;
+                    s.ln() + (TAILS + 1.0) * (1.0 + r * r / (TAILS * s)).ln()
+                };
+                rest.iter().zip(self.coordinates[j].variance.iter()).map(of).sum()
             };
-            score = squares.iter().zip(&rest).map(likelihood).sum();
+            score = rest.iter().enumerate().map(likelihood).sum();
             if step + 1 < STEPS {
                 theta = pseudo_inverse(&a) * &b;
             }

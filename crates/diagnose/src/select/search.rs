@@ -8,7 +8,7 @@ use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach, ridge_of};
-use crate::identify::marginal::{Chain, Spread, estimate, products, score, sum};
+use crate::identify::marginal::{Chain, Spread, estimate, score};
 use crate::screen::Score;
 use crate::standing::told;
 use crate::work::Until;
@@ -48,12 +48,15 @@ pub struct Tried {
 /// Effects at most, and how many the linear model may add at once.
 const MOST: usize = 6;
 const AT_ONCE: usize = 3;
-/// Share of what there is beyond noise that is next to nothing, and of what a set leaves that one more effect has to take.
-const LITTLE: f64 = 0.05;
-const MOST_OF: f64 = 0.5;
+/// Share of what the unknown forces do that one more effect has to take; and where less than a hundredth of that is left, which may be what the found
+/// laws are off by themselves.
+const FURTHER: [f64; 2] = [0.2, 0.75];
+const SMALL: f64 = 0.01;
+/// Share of what the unknown forces do below which nothing is left to add.
+pub const NEXT_TO_NOTHING: f64 = 1e-3;
 /// Sets that are fitted in full simulation in a round.
 const FITTED: usize = 4;
-/// Single effects among them that the missing force speaks for.
+/// Sets of one size among them that the missing force speaks for; of the largest one.
 const SPOKEN: usize = 2;
 /// Share of the best promise below which a set is not fitted.
 const PROMISING: f64 = 0.6;
@@ -81,10 +84,11 @@ pub fn search(
     let mut now = nominal.clone();
     let mut found = Found { nominal, best: now.clone(), tried: Vec::new(), shown: Vec::new(), left: 0.0 };
     let many = hypotheses(&now).len();
+    let all = problem.power(&now);
     for round in 0..MOST {
         let room = MOST.saturating_sub(now.set.findings().count());
-        let all = open(hypotheses(&now), &now, problem)?;
-        let cheapest = all.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
+        let hypotheses = open(hypotheses(&now), &now, problem)?;
+        let cheapest = hypotheses.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
         // A nominal model that leaves nothing is still asked what these recordings can show.
         if room == 0 || round > 0 && remainder(problem, &now)?.rise < cheapest {
             break;
@@ -92,15 +96,16 @@ pub fn search(
         if problem.stage.work.is_spent(Until::Search) {
             break;
         }
-        let (pool, grown, spoken) = linear_sets(problem, &mut now, all, room.min(AT_ONCE))?;
+        let (pool, grown, spoken) = linear_sets(problem, &mut now, hypotheses, room.min(AT_ONCE))?;
         if round == 0 {
             (found.shown, found.left) = (shown(&pool, &grown), grown.left);
         }
-        let bounds = Bounds { round, many, cheapest, all: grown.left };
+        let bounds = Bounds { round, many, cheapest, all };
         let best = fit_sets(problem, &now, (&pool, &grown.sets, &spoken), bounds, &mut found.tried)?;
         let Some(best) = best else { break };
         // What takes little of what an accepted set leaves stands for something that is not in the library.
-        if round > 0 && now.score - best.score < MOST_OF * grown.left {
+        let here = problem.power(&now);
+        if round > 0 && problem.power(&best) > (1.0 - further(here, all)) * here {
             break;
         }
         now = problem.fit(&best, best.set.clone(), END).unwrap_or(best);
@@ -111,6 +116,11 @@ pub fn search(
     Ok(found)
 }
 
+/// Share of what unknown forces do beside a set that one more effect has to take.
+fn further(beside: f64, all: f64) -> f64 {
+    FURTHER[usize::from(beside < SMALL * all)]
+}
+
 /// What a round of fits goes by.
 #[derive(Clone, Copy)]
 struct Bounds {
@@ -119,15 +129,14 @@ struct Bounds {
     many: usize,
     /// Price of the cheapest effect.
     cheapest: f64,
-    /// What there is beyond noise.
+    /// What the unknown forces beside the nominal model do.
     all: f64,
 }
 
-/// A set that was fitted, and what it leaves beyond noise.
+/// A set that was fitted, and what its unknown forces do.
 struct Smaller {
     titles: Vec<String>,
-    score: f64,
-    beyond: f64,
+    power: f64,
 }
 
 /// Fits the sets that promise most in full simulation; the best of them where it is worth its price.
@@ -138,7 +147,7 @@ fn fit_sets(
     Bounds { round, many, cheapest, all }: Bounds,
     tried: &mut Vec<Tried>,
 ) -> Result<Option<Fitted>, DiagnoseError> {
-    let before = criterion(now, many);
+    let (before, here) = (criterion(now, many), problem.power(now));
     let mut best: Option<Fitted> = None;
     let mut enough: Vec<Vec<String>> = Vec::new();
     let mut smaller: Vec<Smaller> = Vec::new();
@@ -160,13 +169,16 @@ fn fit_sets(
         let (names, gain) = (names(&fit.set), after - before);
         let said = format!("  {names}: promised {promised:.1}, brought {brought:.1}, criterion {gain:.1}");
         problem.stage.work.watch.step(&said);
-        if left.rise < cheapest || left.beyond < LITTLE * all {
+        let power = problem.power(&fit);
+        if left.rise < cheapest || power < NEXT_TO_NOTHING * here {
             enough.push(added.clone());
         }
-        // What a set adds to a smaller one has to take most of what that leaves.
-        let is_idle = |known: &Smaller| known.titles.iter().all(|t| added.contains(t)) && known.score - fit.score < MOST_OF * known.beyond;
+        // What a set adds to a smaller one has to take its part of what that leaves.
+        let is_idle = |known: &Smaller| {
+            known.titles.iter().all(|t| added.contains(t)) && power > (1.0 - further(known.power, all)) * known.power
+        };
         let is_idle = smaller.iter().any(is_idle);
-        smaller.push(Smaller { titles: added.clone(), score: fit.score, beyond: left.beyond });
+        smaller.push(Smaller { titles: added.clone(), power });
         let scores = [now.score, fit.score];
         tried.push(Tried { round, set: fit.set.clone(), added, scores, criteria: [before, after], promised });
         if !is_idle && after < best.as_ref().map_or(before, |b| criterion(b, many)) {
@@ -183,8 +195,6 @@ pub struct Remainder {
     pub rise: f64,
     /// What noise alone exceeds with a probability of one in a hundred.
     pub bound: f64,
-    /// −2 log likelihood beyond that of a model which leaves noise alone.
-    pub beyond: f64,
 }
 
 /// Likelihood ratio of unknown forces and further noise.
@@ -202,8 +212,7 @@ pub fn remainder(problem: &Problem<'_>, fit: &Fitted) -> Result<Remainder, Diagn
     // A gamma distribution of that mean and variance: the cube root is nearly normal.
     let shape = mean * mean / variance;
     let bound = mean * (1.0 - 1.0 / (9.0 * shape) + ONE_IN_HUNDRED / (9.0 * shape).sqrt()).powi(3);
-    let noise = sum(&products(&chains, &silent)).log_det + made.count as f64;
-    Ok(Remainder { rise: at(&silent) - at(&fit.spread), bound, beyond: at(&fit.spread) - noise })
+    Ok(Remainder { rise: at(&silent) - at(&fit.spread), bound })
 }
 
 /// Normal score that is exceeded once in a hundred times.
@@ -286,7 +295,7 @@ fn chosen(pool: &Pool, now: &Fitted, (sets, spoken): (&[LinearSet], &[Spoken])) 
     let loudest = spoken.iter().map(|s| -s.change).fold(0.0, f64::max);
     let spoken = (1..=AT_ONCE).flat_map(|size| {
         let own = spoken.iter().filter(move |s| s.members.len() == size && -s.change >= PROMISING * loudest);
-        own.take(if size == 1 { SPOKEN } else { 1 })
+        own.take(if size < AT_ONCE { SPOKEN } else { 1 })
     });
     let single = sets.iter().find(|s| s.members.len() == 1);
     let mut chosen: Vec<LinearSet> = Vec::new();
