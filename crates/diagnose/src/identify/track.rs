@@ -8,6 +8,7 @@ use crate::linear::{Stage, Variation};
 use crate::plant::Built;
 use crate::replay::{Pace, Shot, Span, members_between, shoot};
 use crate::start::{Freedom, Start, freedoms};
+use crate::tape::Tape;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -96,7 +97,7 @@ impl Track {
         let tape = &stage.tapes[run];
         let (from, to) = tape.span;
         let instants: Vec<f64> = (0..=count).map(|i| from + (to - from) * i as f64 / count as f64).collect();
-        let members = members_between(built, tape, &instants)?;
+        let members = told_by(built, tape, &instants)?;
         let interval = |(w, members): (&[f64], Vec<u32>)| {
             let span = Span { from: w[0], to: w[1] };
             Interval { span, members, start: guess(built, tape, w[0]), force: DVector::zeros(forces) }
@@ -109,7 +110,7 @@ impl Track {
         let begins = self.intervals.iter().map(|i| i.span.from);
         let instants: Vec<f64> = begins.chain(self.intervals.last().map(|i| i.span.to)).collect();
         let mut onto = self.clone();
-        let members = members_between(built, &stage.tapes[self.run], &instants)?;
+        let members = told_by(built, &stage.tapes[self.run], &instants)?;
         onto.intervals.iter_mut().zip(members).for_each(|(interval, own)| interval.members = own);
         Ok(onto)
     }
@@ -348,6 +349,18 @@ impl Frame<'_> {
 /// ∂r/∂θ and ∂end/∂θ of an interval.
 pub type Column = (DVector<f64>, DVector<f64>);
 
+/// Events by interval, without those at the begin of a run that is commanded: what was commanded before is not recorded, and a late actuator still
+/// follows it.
+fn told_by(built: &Built, tape: &Tape, instants: &[f64]) -> Result<Vec<Vec<u32>>, DiagnoseError> {
+    let mut members = members_between(built, tape, instants)?;
+    if let (Some(first), false) = (members.first_mut(), tape.commands.is_empty()) {
+        first.retain(|m| tape.events[*m as usize].time >= tape.span.0 + UNHEARD);
+    }
+    Ok(members)
+}
+
+/// How long a run may follow commands from before its begin, s.
+const UNHEARD: f64 = 0.02;
 /// Two instants closer than this are one, s.
 const SAME: f64 = 1e-9;
 /// Passes over an interval, and over the first, whose state is only guessed.
