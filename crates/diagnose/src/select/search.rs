@@ -52,10 +52,14 @@ const AT_ONCE: usize = 3;
 /// laws are off by themselves.
 const FURTHER: [f64; 2] = [0.2, 0.75];
 const SMALL: f64 = 0.01;
+/// Share of what the unknown forces do (their power) that may be what steps and difference quotients make of the laws that were found.
+const OWN: f64 = 1e-5;
 /// Share of what the unknown forces do below which nothing is left to add.
 pub const NEXT_TO_NOTHING: f64 = 1e-3;
 /// Sets that are fitted in full simulation in a round.
 const FITTED: usize = 4;
+/// Places among them at which the most promising law is tried beside its own.
+const SIBLINGS: usize = 2;
 /// Sets of one size among them that the missing force speaks for; of the largest one.
 const SPOKEN: usize = 2;
 /// Share of the best promise below which a set is not fitted.
@@ -90,7 +94,10 @@ pub fn search(
         let hypotheses = open(hypotheses(&now), &now, problem)?;
         let cheapest = hypotheses.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
         // A nominal model that leaves nothing is still asked what these recordings can show.
-        if room == 0 || round > 0 && remainder(problem, &now)?.rise < cheapest {
+        let is_done = |now: &Fitted| -> Result<bool, DiagnoseError> {
+            Ok(problem.power(now) < OWN * all || remainder(problem, now)?.rise < cheapest)
+        };
+        if room == 0 || round > 0 && is_done(&now)? {
             break;
         }
         if problem.stage.work.is_spent(Until::Search) {
@@ -298,9 +305,13 @@ fn chosen(pool: &Pool, now: &Fitted, (sets, spoken): (&[LinearSet], &[Spoken])) 
         own.take(if size < AT_ONCE { SPOKEN } else { 1 })
     });
     let single = sets.iter().find(|s| s.members.len() == 1);
+    // The same law at another place looks much like it.
+    let law = |s: &LinearSet| (s.members.len() == 1).then(|| pool.of(s.members[0].0).name);
+    let siblings = sets.iter().filter(|s| single.is_some_and(|own| law(s) == law(own) && titles(s) != titles(own)));
     let mut chosen: Vec<LinearSet> = Vec::new();
     // What the missing force says of a law is nearer to it where no line follows that.
-    for set in spoken.map(as_linear).chain(sets.iter().filter(worth).take(FITTED).chain(single).cloned()) {
+    let promising = sets.iter().filter(worth).take(FITTED).chain(single).chain(siblings.take(SIBLINGS));
+    for set in spoken.map(as_linear).chain(promising.cloned()) {
         if !chosen.iter().any(|c| titles(c) == titles(&set)) {
             chosen.push(set);
         }
