@@ -116,7 +116,7 @@ pub fn search(
             break;
         }
         now = problem.fit(&best, best.set.clone(), END).unwrap_or(best);
-        now = without_idle(problem, now, many)?;
+        now = without_idle(problem, now, (many, all))?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
     found.best = now;
@@ -125,6 +125,9 @@ pub fn search(
 
 /// Share of what unknown forces do beside a set that one more effect has to take.
 fn further(beside: f64, all: f64) -> f64 {
+    if beside < OWN * all {
+        return 1.0;
+    }
     FURTHER[usize::from(beside < SMALL * all)]
 }
 
@@ -321,17 +324,18 @@ fn chosen(pool: &Pool, now: &Fitted, (sets, spoken): (&[LinearSet], &[Spoken])) 
 }
 
 /// A fit without members that are not worth their price.
-fn without_idle(problem: &Problem<'_>, mut now: Fitted, many: usize) -> Result<Fitted, DiagnoseError> {
+fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64)) -> Result<Fitted, DiagnoseError> {
     while now.set.findings().count() > 1 {
         let mut better = None;
         for m in (0..now.set.members.len()).rev().filter(|m| !now.set.members[*m].0.is_tolerated()) {
             let Ok(glance) = problem.fit(&now, now.set.without(m), GLANCE) else { continue };
             // What is worse by far after two steps does not come back.
-            if criterion(&glance, many) - criterion(&now, many) > FAR {
+            let leaves_own = |fit: &Fitted| problem.power(fit) < OWN * all;
+            if criterion(&glance, many) - criterion(&now, many) > FAR && !leaves_own(&glance) {
                 continue;
             }
             let Ok(less) = problem.fit(&glance, glance.set.clone(), LOOK) else { continue };
-            if criterion(&less, many) < better.as_ref().map_or(criterion(&now, many), |b| criterion(b, many)) {
+            if leaves_own(&less) || criterion(&less, many) < better.as_ref().map_or(criterion(&now, many), |b| criterion(b, many)) {
                 better = Some(less);
             }
         }
