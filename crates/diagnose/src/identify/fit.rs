@@ -265,7 +265,8 @@ impl<'a> Problem<'a> {
     /// A set fitted, from where another one stands.
     pub fn fit(&self, from: &Fitted, set: EffectSet, reach: Reach) -> Result<Fitted, DiagnoseError> {
         let mut now = self.with(from, set)?;
-        if now.set.titles() != from.set.titles() {
+        // To the end a fit begins by following the runs anew: what memory an effect has in them may have been found beside other numbers.
+        if !reach.reuse || now.set.titles() != from.set.titles() {
             now = self.followed(from, now)?;
         }
         let slots = now.set.slots();
