@@ -142,8 +142,7 @@ impl<'a> Problem<'a> {
         }
         let set = EffectSet::default();
         let built = self.plant.build(&[])?;
-        let mut tracks: Vec<Track> =
-            self.runs.par_iter().map(|r| self.cut(&built, *r)).collect::<Result<_, _>>()?;
+        let mut tracks: Vec<Track> = self.runs.par_iter().map(|r| self.cut(&built, *r)).collect::<Result<_, _>>()?;
         let freedoms = coordinates(&built, &tracks[0].intervals[0].start);
         let frame = Frame { stage: &self.stage, built: &built, freedoms: &freedoms, forces: &self.forces };
         let typical = frame.link(tracks[0].run, &tracks[0].intervals[self.knots / 2]).ok_or_else(|| self.lost())?;

@@ -14,6 +14,9 @@ use crate::identify::marginal::Linear;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+/// The smoothed force of every interval of a run, and its variance.
+pub type Forces = (Vec<DVector<f64>>, Vec<DVector<f64>>);
+
 /// The missing force, and the forces of all columns.
 pub struct Regression<'a> {
     pool: &'a Pool,
@@ -54,11 +57,7 @@ const TAKING_PART: usize = 30;
 
 impl<'a> Regression<'a> {
     /// Of some runs, whose columns of the pool begin at `first`; `forces`: the smoothed force of every interval and its variance, run by run.
-    pub fn new(
-        pool: &'a Pool,
-        (runs, first, count): (&[Linear], usize, usize),
-        forces: &[(Vec<DVector<f64>>, Vec<DVector<f64>>)],
-    ) -> Self {
+    pub fn new(pool: &'a Pool, (runs, first, count): (&[Linear], usize, usize), forces: &[Forces]) -> Self {
         let columns = pool.columns();
         let of_run = |run: &Linear| {
             let of_interval = |i: usize| {
@@ -149,8 +148,7 @@ impl<'a> Regression<'a> {
         let w: Vec<DMatrix<f64>> = self.coordinates.iter().map(|c| c.columns.select_columns(&columns)).collect();
         let mut theta = DVector::zeros(columns.len());
         // From afar: what the largest forces say counts at first.
-        let all: f64 =
-            self.coordinates.iter().map(|c| c.missing.norm_squared() / c.missing.len().max(1) as f64).sum();
+        let all: f64 = self.coordinates.iter().map(|c| c.missing.norm_squared() / c.missing.len().max(1) as f64).sum();
         let mut squares = vec![all; self.coordinates.len()];
         let mut score = f64::INFINITY;
         for step in 0..STEPS {
@@ -234,7 +232,12 @@ mod tests {
             let mut y = DMatrix::zeros(SAMPLES, JOINTS + 1);
             (0..JOINTS).for_each(|k| y.column_mut(k).copy_from(&(f.column(k) * (-wrong * rates[k]))));
             sides.push(Side { y, d: DMatrix::zeros(1, JOINTS + 1) });
-            links.push(Link { s: DMatrix::zeros(SAMPLES, 1), f, a: DMatrix::identity(1, 1), b: DMatrix::zeros(1, JOINTS) });
+            links.push(Link {
+                s: DMatrix::zeros(SAMPLES, 1),
+                f,
+                a: DMatrix::identity(1, 1),
+                b: DMatrix::zeros(1, JOINTS),
+            });
             forces.push(DVector::from_fn(JOINTS, |k, _| if k == 0 { -truth * rates[0] } else { 0.0 } + 1e-3 * draw()));
         }
         let variances = vec![DVector::from_element(JOINTS, 1e-6); INTERVALS];

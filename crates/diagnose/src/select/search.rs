@@ -335,7 +335,9 @@ fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64
                 continue;
             }
             let Ok(less) = problem.fit(&glance, glance.set.clone(), LOOK) else { continue };
-            if leaves_own(&less) || criterion(&less, many) < better.as_ref().map_or(criterion(&now, many), |b| criterion(b, many)) {
+            if leaves_own(&less)
+                || criterion(&less, many) < better.as_ref().map_or(criterion(&now, many), |b| criterion(b, many))
+            {
                 better = Some(less);
             }
         }
