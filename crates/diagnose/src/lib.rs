@@ -10,6 +10,7 @@ mod accuracy;
 mod along;
 mod approaches;
 pub mod attempt;
+mod better;
 pub mod catalogue;
 mod choice;
 mod clock;

@@ -7,6 +7,7 @@
 
 use crate::along;
 use crate::attempt::Attempt;
+use crate::better::{SETTLED, is_clearly_better, is_near_noise, merit};
 use crate::catalogue::{self, hypotheses};
 use crate::clock::Clock;
 use crate::curves;
@@ -105,23 +106,6 @@ pub fn diagnose_with(
 /// What may be done along whole runs, relative to the usual: there it is all that is done.
 const ALONG: f64 = 2.0;
 
-/// Whether a likelihood of samples is to be believed: all is explained, or what is left is of the size of noise. Far beyond it the laws that were found are off by
-/// more than noise at every sample, and what is likeliest sample by sample is decided by where they are off most.
-fn is_near_noise(diagnosis: &Diagnosis) -> bool {
-    let has_effects = !diagnosis.effects.is_empty();
-    merit(diagnosis) >= 1.0 || has_effects && diagnosis.error.windowed.after < NEAR_NOISE
-}
-
-/// Whether a diagnosis explains more than another one by more than the runs tell exactly.
-fn is_clearly_better(one: &Diagnosis, other: &Diagnosis) -> bool {
-    let interval = |d: &Diagnosis| d.explained_share.as_ref().map_or([0.0; 2], |e| e.interval);
-    let overlaps = interval(one)[0] <= interval(other)[1];
-    merit(one) > merit(other) && !(overlaps && merit(other) >= SETTLED)
-}
-
-/// Error over windows, units of noise, up to which what is left is of the size of noise.
-const NEAR_NOISE: f64 = 10.0;
-
 /// The same in windows of one length, and of another where that explains too little.
 fn diagnose_in_windows(
     scenario: Scenario,
@@ -144,23 +128,8 @@ fn diagnose_in_windows(
     Ok(if merit(&other.0) > merit(&found.0) { other } else { found })
 }
 
-/// How much of the mismatch is explained: all, a share (of windows, which may be told to the last while whole runs are not), or nothing.
-fn merit(diagnosis: &Diagnosis) -> f64 {
-    match diagnosis.verdict {
-        Verdict::NoMismatch | Verdict::Explained => 1.0,
-        Verdict::PartlyExplained => diagnosis.explained_share.as_ref().map_or(0.0, |e| e.share.clamp(0.0, NOT_ALL)),
-        Verdict::Unknown => -1.0,
-    }
-}
-
-/// Most that a share counts for where something is left.
-const NOT_ALL: f64 = 0.999_999;
-
 /// What a reader must know of a search that was ended.
 const SPENT: &str = "The search was ended by its limit of work before it had looked at all that promised something; `--effort 4` looks further.";
-
-/// Share of a mismatch with which a search is content.
-const SETTLED: f64 = 0.9;
 
 /// A recording beside its nominal model, before anything is searched for.
 struct Prepared<'w> {

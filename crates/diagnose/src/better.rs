@@ -1,0 +1,35 @@
+//! Which of two diagnoses of one recording is told.
+
+use crate::diagnosis::{Diagnosis, Verdict};
+
+/// Whether a likelihood of samples is to be believed: all is explained, or what is left is of the size of noise. Far beyond it the laws that were found are off by
+/// more than noise at every sample, and what is likeliest sample by sample is decided by where they are off most.
+pub(crate) fn is_near_noise(diagnosis: &Diagnosis) -> bool {
+    let has_effects = !diagnosis.effects.is_empty();
+    merit(diagnosis) >= 1.0 || has_effects && diagnosis.error.windowed.after < NEAR_NOISE
+}
+
+/// Whether a diagnosis explains more than another one by more than the runs tell exactly.
+pub(crate) fn is_clearly_better(one: &Diagnosis, other: &Diagnosis) -> bool {
+    let interval = |d: &Diagnosis| d.explained_share.as_ref().map_or([0.0; 2], |e| e.interval);
+    let overlaps = interval(one)[0] <= interval(other)[1];
+    merit(one) > merit(other) && !(overlaps && merit(other) >= SETTLED)
+}
+
+/// Error over windows, units of noise, up to which what is left is of the size of noise.
+const NEAR_NOISE: f64 = 10.0;
+
+/// How much of the mismatch is explained: all, a share (of windows, which may be told to the last while whole runs are not), or nothing.
+pub(crate) fn merit(diagnosis: &Diagnosis) -> f64 {
+    match diagnosis.verdict {
+        Verdict::NoMismatch | Verdict::Explained => 1.0,
+        Verdict::PartlyExplained => diagnosis.explained_share.as_ref().map_or(0.0, |e| e.share.clamp(0.0, NOT_ALL)),
+        Verdict::Unknown => -1.0,
+    }
+}
+
+/// Most that a share counts for where something is left.
+const NOT_ALL: f64 = 0.999_999;
+
+/// Share of a mismatch with which a search is content.
+pub(crate) const SETTLED: f64 = 0.9;
