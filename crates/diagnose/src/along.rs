@@ -6,7 +6,6 @@ use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::Fit;
 use crate::identify::fit::{Fitted, Problem, Reach};
-use crate::identify::track::Frame;
 use crate::linear::{Segment, Stage, Steps};
 use crate::plant::{Built, Plant};
 use crate::replay::Span;
@@ -48,7 +47,8 @@ pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Cour
     Ok(Course { found, left: [left, after] })
 }
 
-fn problem<'a>(stage: &Stage<'a>, plant: &'a Plant, own: &Facts, role: Role) -> Problem<'a> {
+/// The runs of a role along which something is sought.
+pub(crate) fn problem<'a>(stage: &Stage<'a>, plant: &'a Plant, own: &Facts, role: Role) -> Problem<'a> {
     let runs = (0..stage.tapes.len()).filter(|r| stage.tapes[*r].role == role).collect();
     Problem::new(*stage, plant, own, runs)
 }
@@ -90,15 +90,15 @@ pub(crate) fn windows(
     if !left_out.runs.is_empty() {
         fits.push(left_out.along(fitted, &fitted.set)?);
     }
-    let segments = fits.iter().flat_map(|f| windows_of(stage, f, window)).collect();
+    let segments = fits.iter().flat_map(|f| windows_of(&left_out, f, window)).collect();
     Ok(as_fit(stage, fitted, segments))
 }
 
-/// Windows of the runs of a fit.
-pub(crate) fn windows_of(stage: &Stage<'_>, fitted: &Fitted, window: f64) -> Vec<Segment> {
-    let frame = Frame { stage, built: &fitted.built, freedoms: &fitted.freedoms, forces: &[] };
+/// Windows of the runs of a fit, whether these are a problem's own or others.
+pub(crate) fn windows_of(problem: &Problem<'_>, fitted: &Fitted, window: f64) -> Vec<Segment> {
+    let frame = problem.frame(fitted);
     let of_run = |track: &crate::identify::track::Track| {
-        let spans = crate::linear::windows(&stage.tapes[track.run], Some(window));
+        let spans = crate::linear::windows(&problem.stage.tapes[track.run], Some(window));
         let segment = |span: Span| {
             let start = frame.state_at(track, span.from)?;
             let guess = Arc::new(start.clone());

@@ -11,7 +11,7 @@ use crate::reading::Value;
 use crate::start::Start;
 use crate::tape::{Event, Tape};
 use scenario::measure::{Gauge, Reading as Measured, SensorModel};
-use sim::{Integrator, World};
+use sim::{Integrator, Push, World};
 use spatial::Vec3;
 
 /// A stretch of a run, replayed from a start of its own.
@@ -77,7 +77,8 @@ pub fn observe(
 ) -> Result<(), DiagnoseError> {
     let sensors = sensors_of(built, tape)?;
     let events = events_in(tape, span, &sensors);
-    let shown = measure(built, (tape, start), (span, pace), (&sensors, &events), |i, event, truth| {
+    let replay = Replay::new(built, tape, start, span.from, pace);
+    let shown = measure(replay, &sensors, &events, |i, event, truth| {
         look(i, event, &Value::from(sensors[event.reading as usize].1.apply(truth)));
     });
     shown.map(|_| ())
@@ -88,8 +89,20 @@ pub fn readings(built: &Built, tape: &Tape, start: &Start, span: Span, pace: Pac
     let mut values = vec![Measured::Scalar(f64::NAN); tape.range(span).len()];
     let sensors = sensors_of(built, tape)?;
     let events = events_in(tape, span, &sensors);
-    let replay = measure(built, (tape, start), (span, pace), (&sensors, &events), |i, _, truth| values[i] = *truth)?;
+    let replay = Replay::new(built, tape, start, span.from, pace);
+    let replay = measure(replay, &sensors, &events, |i, _, truth| values[i] = *truth)?;
     Ok(Readings { values, work: replay.world.state().work })
+}
+
+/// A part of a run that is replayed by itself.
+#[derive(Clone, Debug)]
+pub struct Leg<'a> {
+    /// When.
+    pub span: Span,
+    /// The events of the tape that tell of it.
+    pub members: &'a [u32],
+    /// Forces beside all laws that act throughout.
+    pub push: Option<Push>,
 }
 
 /// A replay of one interval: what sensors with the faults of the model read of some events, and the state at its end.
@@ -105,13 +118,8 @@ pub struct Shot {
 
 /// Replays an interval for the residuals of some of the tape's events and for its end; events that a late sensor took before it are read at
 /// its begin.
-pub fn shoot(
-    built: &Built,
-    tape: &Tape,
-    start: &Start,
-    (span, members): (Span, &[u32]),
-    pace: Pace,
-) -> Result<Shot, DiagnoseError> {
+pub fn shoot(built: &Built, tape: &Tape, start: &Start, leg: Leg<'_>, pace: Pace) -> Result<Shot, DiagnoseError> {
+    let Leg { span, members, push } = leg;
     let sensors = sensors_of(built, tape)?;
     let late = |(i, m): (usize, &u32)| {
         let event = tape.events[*m as usize];
@@ -125,7 +133,9 @@ pub fn shoot(
         offsets.push(offsets[offsets.len() - 1] + width);
     });
     let mut residuals = vec![f64::NAN; offsets[members.len()]];
-    let mut replay = measure(built, (tape, start), (span, pace), (&sensors, &events), |i, event, truth| {
+    let mut replay = Replay::new(built, tape, start, span.from, pace);
+    replay.world.push(push);
+    let mut replay = measure(replay, &sensors, &events, |i, event, truth| {
         let value = Value::from(sensors[event.reading as usize].1.apply(truth));
         tape.readings[event.reading as usize].write_residual(
             event.sample as usize,
@@ -179,15 +189,13 @@ fn sensors_of(built: &Built, tape: &Tape) -> Result<Vec<(Gauge, SensorModel)>, D
 /// What a channel reads, and the faults of its sensor.
 type Sensor = (Gauge, SensorModel);
 
-/// Replays a span and hands what every sensor is given to read to `look`; what that took.
+/// Runs through some events and hands what every sensor is given to read to `look`; the replay where it is then.
 fn measure<'a>(
-    built: &Built,
-    (tape, start): (&'a Tape, &Start),
-    (span, pace): (Span, Pace),
-    (sensors, events): (&[Sensor], &[(usize, Event)]),
+    mut replay: Replay<'a>,
+    sensors: &[Sensor],
+    events: &[(usize, Event)],
     mut look: impl FnMut(usize, &Event, &Measured),
 ) -> Result<Replay<'a>, DiagnoseError> {
-    let mut replay = Replay::new(built, tape, start, span.from, pace);
     let may_hold = !replay.mounts.rests.is_empty();
     let gauge_of = |event: &Event| &sensors[event.reading as usize].0;
     let rests = |event: &Event| {

@@ -289,7 +289,7 @@ fn predict_along(
         joined(&corrected.segments, few.tapes).into_iter().filter(|s| few.tapes[s.run].role == Role::Fit).collect();
     let whole = follow(few, plant, best.set.frozen(), &runs)?;
     let follows = whole.rms() < lost::NEAR;
-    let windows = along::windows_of(few, best, window);
+    let windows = along::windows_of(&along::problem(few, plant, own, Role::Fit), best, window);
     let found = along::as_fit(few, best, if follows { whole.segments } else { windows });
     let corrected = Fit { set: best.set.clone(), built: best.built.clone(), ..corrected };
     let judgement = judge((few, all), plant, ([&known, &known], &corrected), (window, follows))?;

@@ -5,7 +5,7 @@
 
 use crate::plant::Built;
 use friction::Friction;
-use sim::{Push, World};
+use sim::World;
 use spatial::{Pose, Twist, Vec3, exp_rotation};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -36,8 +36,6 @@ pub struct Start {
     pub bristles: Vec<Vec3>,
     /// How long each base has been still, s: what sticks grows stronger with that.
     pub still: Vec<f64>,
-    /// Forces beside all laws that act from there on.
-    pub push: Option<Push>,
 }
 
 /// One free coordinate of a start.
@@ -93,7 +91,6 @@ impl Start {
             memory: vec![0.0; count_memory(built)],
             bristles: Vec::new(),
             still: vec![0.0; state.bases.len()],
-            push: None,
         }
     }
 
@@ -109,7 +106,6 @@ impl Start {
             memory: vec![0.0; count_memory(built)],
             bristles: Vec::new(),
             still: vec![0.0; state.bases.len()],
-            push: None,
         };
         if start.memory.is_empty() && state.bristles.is_empty() {
             return start;
@@ -168,7 +164,6 @@ impl Start {
         state.v.clone_from(&self.v);
         let mut world = World::new(Arc::clone(built.model_of(run)), state).without_books();
         world.set_base_twists(&self.twists);
-        world.push(self.push.clone());
         if !self.bristles.is_empty() {
             let s = |i: usize| self.bristles.get(i).copied().unwrap_or_default();
             world.seed_bristles(|i, touch| (s(i), self.calc_stuck(built, touch.pair)));

@@ -109,7 +109,8 @@ impl<'a> Problem<'a> {
         Self { stage, plant, runs, knots, forces: forces(facts), channels }
     }
 
-    fn frame<'f>(&'f self, of: &'f Fitted) -> Frame<'f> {
+    /// What a fit's runs are made linear about and by.
+    pub fn frame<'f>(&'f self, of: &'f Fitted) -> Frame<'f> {
         Frame { stage: &self.stage, built: &of.built, freedoms: &of.freedoms, forces: &self.forces }
     }
 
@@ -317,7 +318,7 @@ impl<'a> Problem<'a> {
         let mut now = with.clone();
         let is_near = self.follow(&mut now).and_then(|()| {
             let made = self.linearise(&mut now, &[], true)?;
-            Ok(score(&made.chains(&[]), &now.spread) < score_beyond(from))
+            Ok(score(&made.chains(&[]), &now.spread) < from.score + ASTRAY * from.count as f64)
         });
         if is_near.unwrap_or(false) {
             return Ok(now);
@@ -429,11 +430,6 @@ impl<'a> Problem<'a> {
         let of = |(track, chain): (&Track, &Chain)| frame.moved(track, &chain.smoothed(&found.spread, &found.theta));
         now.tracks.par_iter().zip(chains).map(of).collect()
     }
-}
-
-/// Where a set that is begun well stands at most beside what it comes from.
-fn score_beyond(from: &Fitted) -> f64 {
-    from.score + ASTRAY * from.count as f64
 }
 
 /// Rise of −2 log likelihood by residual with which derivatives have led astray.

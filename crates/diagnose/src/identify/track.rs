@@ -6,7 +6,7 @@ use crate::error::DiagnoseError;
 use crate::guess::guess;
 use crate::linear::{Stage, Variation};
 use crate::plant::Built;
-use crate::replay::{Pace, Shot, Span, members_between, shoot};
+use crate::replay::{Leg, Pace, Shot, Span, members_between, shoot};
 use crate::start::{Freedom, Start, freedoms};
 use crate::tape::Tape;
 use nalgebra::{DMatrix, DVector};
@@ -19,9 +19,9 @@ pub struct Interval {
     pub span: Span,
     /// The events of the tape that tell of it.
     pub members: Vec<u32>,
-    /// The state at its begin that is believed at present, with the forces that push it from there.
+    /// The state at its begin that is believed at present.
     pub start: Start,
-    /// The same forces by their number.
+    /// The unknown forces that push it from there, by their number.
     pub force: DVector<f64>,
 }
 
@@ -128,17 +128,12 @@ impl Frame<'_> {
 
     fn shoot_at(&self, pace: Pace, built: &Built, (run, interval): (usize, &Interval), start: &Start) -> Option<Base> {
         let tape = &self.stage.tapes[run];
-        let found = shoot(built, tape, start, (interval.span, &interval.members), pace);
+        let push = pushing(self.forces, &interval.force);
+        let found = shoot(built, tape, start, Leg { span: interval.span, members: &interval.members, push }, pace);
         let work = found.as_ref().map_or_else(|_| sim::Work::default(), |s| s.work);
         self.stage.work.add(interval.span.to - interval.span.from, built.model.owners.len(), &work);
         let Shot { residuals, end, .. } = found.ok()?;
         residuals.iter().all(|r| r.is_finite()).then(|| (DVector::from_vec(residuals), end))
-    }
-
-    /// Adds to the forces that push an interval.
-    fn push(&self, interval: &mut Interval, by: &DVector<f64>) {
-        interval.force += by;
-        interval.start.push = pushing(self.forces, &interval.force);
     }
 
     /// Derivatives of an interval by its state and by forces; none where its replay left the range of numbers.
@@ -156,8 +151,8 @@ impl Frame<'_> {
         let by_force = |j: usize| {
             let step = self.forces[j].size;
             let mut pushed = interval.clone();
-            self.push(&mut pushed, &DVector::from_fn(self.forces.len(), |k, _| if k == j { step } else { 0.0 }));
-            column(self.glance(self.built, run, interval, &pushed.start), step)
+            pushed.force[j] += step;
+            column(self.glance(self.built, run, &pushed, &pushed.start), step)
         };
         let states: Vec<_> = self.freedoms.par_iter().map(by_state).collect();
         let forces: Vec<_> = (0..self.forces.len()).into_par_iter().map(by_force).collect();
@@ -230,12 +225,10 @@ impl Frame<'_> {
             let passed = self.pass(track.run, &mut track.intervals[i], (&root, prior), (i == 0, known))?;
             root = passed.root;
             links.push(passed.link);
-            let force = track.intervals[i].force.clone();
-            if let Some(next) = track.intervals.get_mut(i + 1) {
+            if let [this, next, ..] = &mut track.intervals[i..] {
                 // It is expected to be pushed as this one is.
                 next.start = passed.end;
-                next.force.fill(0.0);
-                self.push(next, &force);
+                next.force.clone_from(&this.force);
             }
         }
         Some(links)
@@ -259,9 +252,9 @@ impl Frame<'_> {
             let taken = link.as_ref()?;
             let off = DVector::from_vec(expected.difference(&interval.start, self.freedoms));
             let update = chain::update(&alone(taken, (&r, &off, &interval.force)), root, prior);
-            let (state, force) = (update.state + off, update.force - &interval.force);
+            let (state, force) = (update.state + off, &update.force - &interval.force);
             interval.start = interval.start.retract(self.freedoms, state.as_slice());
-            self.push(interval, &force);
+            interval.force = update.force;
             if pass == if is_first { FIRST } else { PASSES } {
                 let end = end.retract(self.freedoms, (&taken.a * state + &taken.b * force).as_slice());
                 return link.map(|link| Passed { link, end, root: update.root });
@@ -301,7 +294,7 @@ impl Frame<'_> {
         let at = track.intervals.partition_point(|i| i.span.from <= time + SAME).max(1) - 1;
         let interval = &track.intervals[at];
         if (interval.span.from - time).abs() <= SAME {
-            return Some(Start { push: None, ..interval.start.clone() });
+            return Some(interval.start.clone());
         }
         let part = Interval { span: Span { to: time, ..interval.span }, members: Vec::new(), ..interval.clone() };
         self.shoot(self.built, track.run, &part, &part.start).map(|base| base.1)
@@ -315,7 +308,7 @@ impl Frame<'_> {
             let Some(state) = state else { return vec![interval.clone()] };
             let [mut first, mut second] = [interval.clone(), interval.clone()];
             (first.span.to, second.span.from) = (middle, middle);
-            second.start = Start { push: interval.start.push.clone(), ..state };
+            second.start = state;
             vec![first, second]
         };
         let intervals = track.intervals.iter().zip(which).flat_map(half).collect();
@@ -328,8 +321,7 @@ impl Frame<'_> {
         for (interval, b) in between.intervals.iter_mut().zip(&b.intervals) {
             let by = DVector::from_vec(b.start.difference(&interval.start, self.freedoms)) * 0.5;
             interval.start = interval.start.retract(self.freedoms, by.as_slice());
-            let further = 0.5 * (&b.force - &interval.force);
-            self.push(interval, &further);
+            interval.force = 0.5 * (&interval.force + &b.force);
         }
         between
     }
@@ -339,8 +331,7 @@ impl Frame<'_> {
         let mut moved = track.clone();
         for (interval, (by, force)) in moved.intervals.iter_mut().zip(smoothed.states.iter().zip(&smoothed.forces)) {
             interval.start = interval.start.retract(self.freedoms, by.as_slice());
-            let further = force - &interval.force;
-            self.push(interval, &further);
+            interval.force.clone_from(force);
         }
         moved
     }

@@ -66,8 +66,31 @@ impl Pool {
         &self.hypotheses[self.entries[entry].hypothesis]
     }
 
+    /// What some entries are and where, in alphabetical order: sets of other points of the same hypotheses are alike.
+    pub fn titles(&self, entries: impl Iterator<Item = usize>) -> Vec<String> {
+        let mut titles: Vec<String> = entries.map(|e| self.of(e).title()).collect();
+        titles.sort();
+        titles
+    }
+
+    /// Price of some entries together, for so many residuals.
+    pub fn price(&self, entries: &[usize], count: usize) -> f64 {
+        entries.iter().map(|e| price(self.of(*e), count, self.hypotheses.len())).sum()
+    }
+
+    /// The numbers of some entries at amplitudes of their columns, one entry's after the other; none where one of the effects is impossible.
+    pub fn starts(&self, entries: &[usize], amplitudes: &[f64]) -> Option<Vec<(usize, Vec<f64>)>> {
+        let mut at = 0;
+        let start = |e: &usize| {
+            let from = at;
+            at += self.entries[*e].columns.len();
+            self.start(*e, &amplitudes[from..at]).map(|x| (*e, x))
+        };
+        entries.iter().map(start).collect()
+    }
+
     /// What an entry's numbers are at some amplitudes of its columns; none where no such effect is possible.
-    pub fn start(&self, entry: usize, amplitudes: &[f64]) -> Option<Vec<f64>> {
+    fn start(&self, entry: usize, amplitudes: &[f64]) -> Option<Vec<f64>> {
         let Entry { hypothesis, point, .. } = &self.entries[entry];
         let hypothesis = &self.hypotheses[*hypothesis];
         hypothesis.start_from(&hypothesis.screens[*point], amplitudes)

@@ -8,14 +8,12 @@
 //! asks which of them it is. In contrast to the chain this does not ask that an interval be followed sample by sample along the line on which a hypothesis was
 //! taken: where a joint turns, dry friction is far from any line, and a few such intervals are outliers here, not a contradiction.
 
-use super::pool::{Pool, price};
+use super::pool::Pool;
 use crate::fit::pseudo_inverse;
+use crate::identify::chain::Smoothed;
 use crate::identify::marginal::Linear;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-
-/// The smoothed force of every interval of a run, and its variance.
-pub type Forces = (Vec<DVector<f64>>, Vec<DVector<f64>>);
 
 /// The missing force, and the forces of all columns.
 pub struct Regression<'a> {
@@ -56,8 +54,8 @@ const GROWN: usize = 3;
 const TAKING_PART: usize = 30;
 
 impl<'a> Regression<'a> {
-    /// Of some runs, whose columns of the pool begin at `first`; `forces`: the smoothed force of every interval and its variance, run by run.
-    pub fn new(pool: &'a Pool, (runs, first, count): (&[Linear], usize, usize), forces: &[Forces]) -> Self {
+    /// Of some runs with their smoothed forces; the columns of the pool begin at `first`.
+    pub fn new(pool: &'a Pool, runs: &[Linear], first: usize, smoothed: &[Smoothed]) -> Self {
         let columns = pool.columns();
         let of_run = |run: &Linear| {
             let of_interval = |i: usize| {
@@ -70,7 +68,8 @@ impl<'a> Regression<'a> {
             (0..run.sides.len()).into_par_iter().map(of_interval).collect::<Vec<_>>()
         };
         let parts: Vec<DMatrix<f64>> = runs.iter().flat_map(of_run).collect();
-        let flat: Vec<(&DVector<f64>, &DVector<f64>)> = forces.iter().flat_map(|(f, v)| f.iter().zip(v)).collect();
+        let flat: Vec<(&DVector<f64>, &DVector<f64>)> =
+            smoothed.iter().flat_map(|s| s.forces.iter().zip(&s.variances)).collect();
         let links = || runs.iter().flat_map(|r| r.links.iter());
         let of = |j: usize| {
             let size = (links().map(|l| l.f.column(j).norm_squared()).sum::<f64>() / flat.len().max(1) as f64).sqrt();
@@ -81,6 +80,7 @@ impl<'a> Regression<'a> {
             }
         };
         let n_f = flat.first().map_or(0, |p| p.0.len());
+        let count = runs.iter().flat_map(|r| &r.sides).map(|s| s.y.nrows()).sum();
         Self { pool, count, coordinates: (0..n_f).map(of).collect() }
     }
 
@@ -110,8 +110,7 @@ impl<'a> Regression<'a> {
             let mut titles: Vec<Vec<String>> = Vec::new();
             let best = beam.first().map_or(0.0, |b| b.criterion);
             sets.retain(|s| {
-                let mut own: Vec<String> = s.members.iter().map(|m| self.pool.of(m.0).title()).collect();
-                own.sort();
+                let own = self.pool.titles(s.members.iter().map(|m| m.0));
                 let is_new = s.criterion < best && !titles.contains(&own);
                 titles.push(own);
                 is_new
@@ -129,15 +128,8 @@ impl<'a> Regression<'a> {
 
     fn spoken(&self, members: &[usize], none: f64) -> Option<Spoken> {
         let (theta, score) = self.solve(members);
-        let mut at = 0;
-        let start = |m: &usize| {
-            let own = self.pool.entries[*m].columns.len();
-            at += own;
-            self.pool.start(*m, &theta.as_slice()[at - own..at]).map(|x| (*m, x))
-        };
-        let starts = members.iter().map(start).collect::<Option<Vec<_>>>()?;
-        let many = self.pool.hypotheses.len();
-        let costs: f64 = members.iter().map(|m| price(self.pool.of(*m), self.count, many)).sum();
+        let starts = self.pool.starts(members, theta.as_slice())?;
+        let costs = self.pool.price(members, self.count);
         let change = score - none;
         change.is_finite().then_some(Spoken { members: starts, change, criterion: change + costs })
     }
@@ -243,7 +235,8 @@ mod tests {
         let variances = vec![DVector::from_element(JOINTS, 1e-6); INTERVALS];
         let start = DVector::from_element(1, 1.0);
         let runs = vec![Linear { links: Arc::new(links), sides, channels: Vec::new(), start }];
-        Regression::new(&pool(), (&runs, 0, INTERVALS * SAMPLES), &[(forces, variances)]).grow(3)
+        let smoothed = Smoothed { forces, variances, ..Smoothed::default() };
+        Regression::new(&pool(), &runs, 0, &[smoothed]).grow(3)
     }
 
     #[test]

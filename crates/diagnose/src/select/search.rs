@@ -91,24 +91,21 @@ pub fn search(
     let all = problem.power(&now);
     for round in 0..MOST {
         let room = MOST.saturating_sub(now.set.findings().count());
-        let hypotheses = open(hypotheses(&now), &now, problem)?;
+        let bare = bare(problem, &now)?;
+        let hypotheses = open(hypotheses(&now), &now, problem, &bare);
         let cheapest = hypotheses.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
         // A nominal model that leaves nothing is still asked what these recordings can show.
-        let is_done = |now: &Fitted| -> Result<bool, DiagnoseError> {
-            Ok(problem.power(now) < OWN * all || remainder(problem, now)?.rise < cheapest)
-        };
-        if room == 0 || round > 0 && is_done(&now)? {
+        let is_done = || problem.power(&now) < OWN * all || left_of(problem, &now, &bare).rise < cheapest;
+        if room == 0 || round > 0 && is_done() || problem.stage.work.is_spent(Until::Search) {
             break;
         }
-        if problem.stage.work.is_spent(Until::Search) {
-            break;
-        }
-        let (pool, grown, spoken) = linear_sets(problem, &mut now, hypotheses, room.min(AT_ONCE))?;
+        let Looked { pool, grown, spoken } = look(problem, &mut now, hypotheses, room.min(AT_ONCE))?;
         if round == 0 {
             (found.shown, found.left) = (shown(&pool, &grown), grown.left);
         }
         let bounds = Bounds { round, many, cheapest, all };
-        let best = fit_sets(problem, &now, (&pool, &grown.sets, &spoken), bounds, &mut found.tried)?;
+        let proposals = proposals(&pool, &now, &grown.sets, &spoken);
+        let best = fit_sets(problem, &now, (&pool, proposals), bounds, &mut found.tried)?;
         let Some(best) = best else { break };
         // What takes little of what an accepted set leaves stands for something that is not in the library.
         let here = problem.power(&now);
@@ -153,7 +150,7 @@ struct Smaller {
 fn fit_sets(
     problem: &Problem<'_>,
     now: &Fitted,
-    (pool, sets, spoken): (&Pool, &[LinearSet], &[Spoken]),
+    (pool, proposals): (&Pool, Vec<Proposal>),
     Bounds { round, many, cheapest, all }: Bounds,
     tried: &mut Vec<Tried>,
 ) -> Result<Option<Fitted>, DiagnoseError> {
@@ -161,7 +158,7 @@ fn fit_sets(
     let mut best: Option<Fitted> = None;
     let mut enough: Vec<Vec<String>> = Vec::new();
     let mut smaller: Vec<Smaller> = Vec::new();
-    for set in chosen(pool, now, (sets, spoken)) {
+    for set in proposals {
         if problem.stage.work.is_spent(Until::Search) {
             break;
         }
@@ -171,7 +168,7 @@ fn fit_sets(
             continue;
         }
         let members = set.members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
-        let start = Fitted { spread: set.spread.clone(), ..now.clone() };
+        let start = Fitted { spread: set.spread, ..now.clone() };
         let Ok(fit) = problem.fit(&start, members, LOOK) else { continue };
         let after = criterion(&fit, many);
         let (promised, brought) = (now.score - set.score, now.score - fit.score);
@@ -212,17 +209,23 @@ pub struct Remainder {
 /// Each of m variances at the edge of what it may be adds half a χ² of one degree (Self and Liang 1987): mean ½, variance 5/4 each; the bound is
 /// that sum's 99 % point as of a gamma distribution (Wilson–Hilferty).
 pub fn remainder(problem: &Problem<'_>, fit: &Fitted) -> Result<Remainder, DiagnoseError> {
-    let mut bare = fit.clone();
-    let made = problem.linearise(&mut bare, &[], true)?;
-    let chains = made.chains(&[]);
-    let at = |spread: &Spread| score(&chains, spread);
+    Ok(left_of(problem, fit, &bare(problem, fit)?))
+}
+
+/// The runs of a fit made linear where it stands, without numbers.
+fn bare(problem: &Problem<'_>, fit: &Fitted) -> Result<Vec<Chain>, DiagnoseError> {
+    Ok(problem.linearise(&mut fit.clone(), &[], true)?.chains(&[]))
+}
+
+fn left_of(problem: &Problem<'_>, fit: &Fitted, bare: &[Chain]) -> Remainder {
+    let at = |spread: &Spread| score(bare, spread);
     let stated = (1.0 + problem.stage.doubt).sqrt();
     let silent = Spread { force: &fit.spread.force * 0.0, noise: fit.spread.noise.map(|x| x.min(stated)) };
     let (mean, variance) = (0.5 * problem.variances() as f64, 1.25 * problem.variances() as f64);
     // A gamma distribution of that mean and variance: the cube root is nearly normal.
     let shape = mean * mean / variance;
     let bound = mean * (1.0 - 1.0 / (9.0 * shape) + ONE_IN_HUNDRED / (9.0 * shape).sqrt()).powi(3);
-    Ok(Remainder { rise: at(&silent) - at(&fit.spread), bound })
+    Remainder { rise: at(&silent) - at(&fit.spread), bound }
 }
 
 /// Normal score that is exceeded once in a hundred times.
@@ -234,11 +237,8 @@ fn shown(pool: &Pool, grown: &Grown) -> Vec<(Hypothesis, Score)> {
 }
 
 /// Hypotheses that are not in a set yet, at joints where a force is missing.
-fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>) -> Result<Vec<Hypothesis>, DiagnoseError> {
-    let mut bare = now.clone();
-    let made = problem.linearise(&mut bare, &[], true)?;
-    let chains = made.chains(&[]);
-    let at = |spread: &Spread| score(&chains, spread);
+fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>, bare: &[Chain]) -> Vec<Hypothesis> {
+    let at = |spread: &Spread| score(bare, spread);
     let here = at(&now.spread);
     let without = |j: usize| {
         let mut spread = now.spread.clone();
@@ -253,16 +253,20 @@ fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>) -> Result<Vec
         place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
     };
     let is_in = |h: &Hypothesis| now.set.findings().any(|(m, _)| m.title() == h.title());
-    Ok(all.into_iter().filter(|h| !is_in(h) && !is_dull(&h.place)).collect())
+    all.into_iter().filter(|h| !is_in(h) && !is_dull(&h.place)).collect()
 }
 
-/// Linear sets beside a fit, the best first.
-fn linear_sets(
-    problem: &Problem<'_>,
-    now: &mut Fitted,
-    all: Vec<Hypothesis>,
-    most: usize,
-) -> Result<(Pool, Grown, Vec<Spoken>), DiagnoseError> {
+/// What the first looks at all hypotheses beside a fit say.
+struct Looked {
+    pool: Pool,
+    /// By the chain.
+    grown: Grown,
+    /// By the missing force.
+    spoken: Vec<Spoken>,
+}
+
+/// Takes all columns beside a fit and grows sets of them.
+fn look(problem: &Problem<'_>, now: &mut Fitted, all: Vec<Hypothesis>, most: usize) -> Result<Looked, DiagnoseError> {
     let slots = now.set.slots();
     let active = vary(problem.plant, &now.set, &slots, &first_sizes(&now.set))?;
     let pool = Pool::new(problem.plant, &now.set, all)?;
@@ -274,53 +278,59 @@ fn linear_sets(
     let ridge = ridge_of(&now.set, slots.len());
     let chains = made.chains(&(0..slots.len()).collect::<Vec<_>>());
     let none = estimate(&chains, Some(&ridge), &now.spread, 2);
-    let smoothed = |chain: &Chain| {
-        let found = chain.smoothed(&none.spread, &none.theta);
-        (found.forces, found.variances)
-    };
-    let forces: Vec<_> = chains.iter().map(smoothed).collect();
-    let spoken = Regression::new(&pool, (&made.runs, slots.len(), made.count), &forces).grow(most);
+    let smoothed: Vec<_> = chains.iter().map(|chain| chain.smoothed(&none.spread, &none.theta)).collect();
+    let spoken = Regression::new(&pool, &made.runs, slots.len(), &smoothed).grow(most);
     let ground = Ground { runs: &made.runs, ridge: &ridge, pool: &pool, active: slots.len(), count: made.count };
-    let sets = ground.grow(&none, most);
+    let grown = ground.grow(&none, most);
     watch.step("sets grown");
-    Ok((pool, sets, spoken))
+    Ok(Looked { pool, grown, spoken })
+}
+
+/// A set that is worth a fit.
+struct Proposal {
+    /// Entries of the pool, and coordinates to begin with.
+    members: Vec<(usize, Vec<f64>)>,
+    /// −2 log likelihood that is promised.
+    score: f64,
+    /// Spread to begin with.
+    spread: Spread,
 }
 
 /// The sets that are worth a fit: those that promise most by the criterion, of the chain and of the missing force, smaller ones first.
-fn chosen(pool: &Pool, now: &Fitted, (sets, spoken): (&[LinearSet], &[Spoken])) -> Vec<LinearSet> {
+fn proposals(pool: &Pool, now: &Fitted, sets: &[LinearSet], spoken: &[Spoken]) -> Vec<Proposal> {
     let most = sets.iter().map(|s| now.score - s.score).fold(0.0, f64::max);
-    let worth = |s: &&LinearSet| now.score - s.score >= PROMISING * most;
-    let titles = |s: &LinearSet| {
-        let mut titles: Vec<String> = s.members.iter().map(|m| pool.of(m.0).title()).collect();
-        titles.sort();
-        titles
-    };
-    let as_linear = |s: &Spoken| LinearSet {
-        members: s.members.clone(),
-        criterion: now.score + s.criterion,
-        score: now.score + s.change,
-        left: f64::NAN,
-        spread: now.spread.clone(),
-    };
     let loudest = spoken.iter().map(|s| -s.change).fold(0.0, f64::max);
-    let spoken = (1..=AT_ONCE).flat_map(|size| {
+    let titles = |members: &[(usize, Vec<f64>)]| pool.titles(members.iter().map(|m| m.0));
+    let by_force = (1..=AT_ONCE).flat_map(|size| {
         let own = spoken.iter().filter(move |s| s.members.len() == size && -s.change >= PROMISING * loudest);
         own.take(if size < AT_ONCE { SPOKEN } else { 1 })
     });
+    let by_force = by_force.map(|s| Proposal {
+        members: s.members.clone(),
+        score: now.score + s.change,
+        spread: now.spread.clone(),
+    });
+    let worth = sets.iter().filter(|s| now.score - s.score >= PROMISING * most).take(FITTED);
     let single = sets.iter().find(|s| s.members.len() == 1);
     // The same law at another place looks much like it.
     let law = |s: &LinearSet| (s.members.len() == 1).then(|| pool.of(s.members[0].0).name);
-    let siblings = sets.iter().filter(|s| single.is_some_and(|own| law(s) == law(own) && titles(s) != titles(own)));
-    let mut chosen: Vec<LinearSet> = Vec::new();
+    let is_sibling =
+        |s: &&LinearSet| single.is_some_and(|o| law(s) == law(o) && titles(&s.members) != titles(&o.members));
+    let siblings = sets.iter().filter(is_sibling).take(SIBLINGS);
+    let by_chain = worth.chain(single).chain(siblings).map(|s| Proposal {
+        members: s.members.clone(),
+        score: s.score,
+        spread: s.spread.clone(),
+    });
+    let mut all: Vec<Proposal> = Vec::new();
     // What the missing force says of a law is nearer to it where no line follows that.
-    let promising = sets.iter().filter(worth).take(FITTED).chain(single).chain(siblings.take(SIBLINGS));
-    for set in spoken.map(as_linear).chain(promising.cloned()) {
-        if !chosen.iter().any(|c| titles(c) == titles(&set)) {
-            chosen.push(set);
+    for proposal in by_force.chain(by_chain) {
+        if !all.iter().any(|known| titles(&known.members) == titles(&proposal.members)) {
+            all.push(proposal);
         }
     }
-    chosen.sort_by_key(|s| s.members.len());
-    chosen
+    all.sort_by_key(|p| p.members.len());
+    all
 }
 
 /// A fit without members that are not worth their price.

@@ -1,6 +1,6 @@
 //! Sets of effects in the linear model: grown one by one, several at a time, each with the spread that is likeliest beside it.
 
-use super::pool::{Entry, Pool, price};
+use super::pool::{Entry, Pool};
 use crate::fit::pseudo_inverse;
 use crate::identify::chain::Marginal;
 use crate::identify::marginal::{Chain, Estimate, Linear, Spread, estimate, products, solve, sum, wide_products};
@@ -88,7 +88,8 @@ impl Ground<'_> {
                 break;
             }
             grown.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
-            grown.dedup_by(|a, b| self.titles(a) == self.titles(b));
+            let titles = |s: &LinearSet| self.pool.titles(s.members.iter().map(|m| m.0));
+            grown.dedup_by(|a, b| titles(a) == titles(b));
             // What the linear model leaves of an effect may look like another one: that has to take a good part of it away.
             let least = beam.iter().map(|set| set.left).fold(f64::INFINITY, f64::min);
             let is_further = |g: &LinearSet| g.members.len() == 1 || g.left < (1.0 - FURTHER) * least;
@@ -101,12 +102,6 @@ impl Ground<'_> {
         }
         all.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
         Grown { sets: all, scores, left }
-    }
-
-    fn titles(&self, set: &LinearSet) -> Vec<String> {
-        let mut titles: Vec<String> = set.members.iter().map(|m| self.pool.of(m.0).title()).collect();
-        titles.sort();
-        titles
     }
 
     /// Whether what a set leaves is more than noise, by as much as the cheapest effect costs.
@@ -206,14 +201,7 @@ impl Ground<'_> {
 
     /// Coordinates of all members; none where one of them is impossible.
     fn possible(&self, members: &[usize], found: &Estimate) -> Option<Vec<(usize, Vec<f64>)>> {
-        let mut at = self.active;
-        let start = |m: &usize| {
-            let own = self.pool.entries[*m].columns.len();
-            let amplitudes = &found.theta.as_slice()[at..at + own];
-            at += own;
-            self.pool.start(*m, amplitudes).map(|x| (*m, x))
-        };
-        members.iter().map(start).collect()
+        self.pool.starts(members, &found.theta.as_slice()[self.active..])
     }
 
     fn estimated(&self, members: &[usize], spread: &Spread) -> Option<LinearSet> {
@@ -232,7 +220,7 @@ impl Ground<'_> {
     }
 
     fn price(&self, members: &[usize]) -> f64 {
-        members.iter().map(|m| price(self.pool.of(*m), self.count, self.pool.hypotheses.len())).sum()
+        self.pool.price(members, self.count)
     }
 }
 
