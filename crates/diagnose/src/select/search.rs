@@ -68,6 +68,9 @@ const PROMISING: f64 = 0.6;
 const LOOK: Reach = Reach { iterations: 6, reuse: true };
 const GLANCE: Reach = Reach { iterations: 3, reuse: true };
 const END: Reach = Reach { iterations: 6, reuse: false };
+/// Most times that a fit is followed anew to its end, and fall of −2 log likelihood that is worth another time.
+const ENDS: usize = 5;
+const WORTH: f64 = 3.0;
 /// Criterion by which a set is far from what it was.
 const FAR: f64 = 1000.0;
 /// Rise of the likelihood without a joint's unknown force, as a share of the largest, below which nothing is missing there.
@@ -112,7 +115,7 @@ pub fn search(
         if round > 0 && problem.power(&best) > (1.0 - further(here, all)) * here {
             break;
         }
-        now = problem.fit(&best, best.set.clone(), END).unwrap_or(best);
+        now = to_the_end(problem, best);
         now = without_idle(problem, now, (many, all))?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
@@ -333,6 +336,22 @@ fn proposals(pool: &Pool, now: &Fitted, sets: &[LinearSet], spoken: &[Spoken]) -
     all
 }
 
+/// A fit that is followed anew as long as that betters it: forces that pushed the runs beside other numbers hold these where they were.
+fn to_the_end(problem: &Problem<'_>, mut now: Fitted) -> Fitted {
+    for _ in 0..ENDS {
+        let Ok(next) = problem.fit(&now, now.set.clone(), END) else { break };
+        let fall = now.score - next.score;
+        if fall.is_nan() || fall <= 0.0 {
+            break;
+        }
+        now = next;
+        if fall < WORTH {
+            break;
+        }
+    }
+    now
+}
+
 /// A fit without members that are not worth their price.
 fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64)) -> Result<Fitted, DiagnoseError> {
     while now.set.findings().count() > 1 {
@@ -352,7 +371,7 @@ fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64
             }
         }
         let Some(less) = better else { break };
-        now = problem.fit(&less, less.set.clone(), END).unwrap_or(less);
+        now = to_the_end(problem, less);
     }
     Ok(now)
 }
