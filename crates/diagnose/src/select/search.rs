@@ -71,6 +71,8 @@ const END: Reach = Reach { iterations: 6, reuse: false };
 /// Most times that a fit is followed anew to its end, and fall of −2 log likelihood that is worth another time.
 const ENDS: usize = 5;
 const WORTH: f64 = 3.0;
+/// Share of the most that a set gains by which first fits may be short of what they come to.
+const CLOSE: f64 = 0.02;
 /// Criterion by which a set is far from what it was.
 const FAR: f64 = 1000.0;
 /// Rise of the likelihood without a joint's unknown force, as a share of the largest, below which nothing is missing there.
@@ -115,8 +117,7 @@ pub fn search(
         if round > 0 && problem.power(&best) > (1.0 - further(here, all)) * here {
             break;
         }
-        now = to_the_end(problem, best);
-        now = without_idle(problem, now, (many, all))?;
+        now = without_idle(problem, best, (many, all))?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
     found.best = now;
@@ -149,7 +150,7 @@ struct Smaller {
     power: f64,
 }
 
-/// Fits the sets that promise most in full simulation; the best of them where it is worth its price.
+/// Fits the sets that promise most in full simulation; the best of them, taken to the end, where it is worth its price.
 fn fit_sets(
     problem: &Problem<'_>,
     now: &Fitted,
@@ -158,7 +159,7 @@ fn fit_sets(
     tried: &mut Vec<Tried>,
 ) -> Result<Option<Fitted>, DiagnoseError> {
     let (before, here) = (criterion(now, many), problem.power(now));
-    let mut best: Option<Fitted> = None;
+    let mut worthy: Vec<(usize, Fitted)> = Vec::new();
     let mut enough: Vec<Vec<String>> = Vec::new();
     let mut smaller: Vec<Smaller> = Vec::new();
     for set in proposals {
@@ -191,11 +192,31 @@ fn fit_sets(
         smaller.push(Smaller { titles: added.clone(), power });
         let scores = [now.score, fit.score];
         tried.push(Tried { round, set: fit.set.clone(), added, scores, criteria: [before, after], promised });
-        if !is_idle && after < best.as_ref().map_or(before, |b| criterion(b, many)) {
-            best = Some(fit);
+        if !is_idle && after < before {
+            worthy.push((tried.len() - 1, fit));
         }
     }
-    Ok(best)
+    Ok(best_of(problem, worthy, tried, (before, many)))
+}
+
+/// The best of some fits, each with its number among those tried; those that are next to as good as it are taken to the end first, and told as they are there.
+fn best_of(
+    problem: &Problem<'_>,
+    worthy: Vec<(usize, Fitted)>,
+    tried: &mut [Tried],
+    (before, many): (f64, usize),
+) -> Option<Fitted> {
+    let gain = |fit: &Fitted| before - criterion(fit, many);
+    let most = worthy.iter().map(|(_, fit)| gain(fit)).reduce(f64::max)?;
+    let close = worthy.into_iter().filter(|(_, fit)| gain(fit) >= (1.0 - CLOSE) * most);
+    let to_the_end = |(index, fit): (usize, Fitted)| {
+        let fit = to_the_end(problem, fit);
+        let of: &mut Tried = &mut tried[index];
+        of.set.clone_from(&fit.set);
+        (of.scores[1], of.criteria[1]) = (fit.score, criterion(&fit, many));
+        fit
+    };
+    close.map(to_the_end).min_by(|a, b| criterion(a, many).total_cmp(&criterion(b, many)))
 }
 
 /// What a fit leaves beyond noise.
