@@ -87,7 +87,7 @@ pub fn diagnose_with(
     set: &RecordingSet,
     (effort, watch): (f64, &dyn Watch),
 ) -> Result<(Diagnosis, Evidence), DiagnoseError> {
-    // What runs as a whole explain to the last is explained; where they leave something, or parts touch, windows are asked as well.
+    // Where runs as a whole leave far more than noise, or parts touch, windows are asked as well.
     let whole = diagnose_whole(scenario.clone(), set, &Work::new(watch, ALONG * effort)).unwrap_or_else(|error| {
         watch.step(&format!("along whole runs nothing was found: {error}"));
         None
@@ -103,7 +103,7 @@ pub fn diagnose_with(
     diagnose_in_windows(scenario, set, &Work::new(watch, effort))
 }
 
-/// What may be done along whole runs, relative to the usual: there it is all that is done.
+/// What may be done along whole runs, relative to the usual: as much as in windows of two lengths.
 const ALONG: f64 = 2.0;
 
 /// The same in windows of one length, and of another where that explains too little.
