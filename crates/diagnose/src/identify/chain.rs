@@ -42,8 +42,8 @@ pub struct Prior<'a> {
     pub start: &'a DVector<f64>,
     /// Standard deviation of the unknown force of an interval, by coordinate.
     pub force: &'a DVector<f64>,
-    /// Factor of the noise, by channel.
-    pub noise: &'a DVector<f64>,
+    /// Factor of the noise of every interval, by channel.
+    pub noise: &'a [DVector<f64>],
 }
 
 /// A run with its states and forces eliminated.
@@ -88,8 +88,8 @@ fn filter(nodes: &[Node], prior: Prior<'_>, mut look: impl FnMut(Seen)) -> Margi
     let mut m = DMatrix::zeros(n_x, width);
     let mut total = DMatrix::zeros(width, width);
     let mut log_det = 0.0;
-    for node in nodes {
-        let gram = node.weighted(prior.noise);
+    for (node, noise) in nodes.iter().zip(prior.noise) {
+        let gram = node.weighted(noise);
         let (zz, zy) = (gram.view((0, 0), (n_u, n_u)), gram.view((0, n_u), (n_u, width)));
         let (zs, sy) = (zz.columns(0, n_x), zy.rows(0, n_x));
         let n = with_unit(rooted(&rooted(&zz.into_owned(), &l, prior.force).transpose(), &l, prior.force));
@@ -210,17 +210,17 @@ pub struct Update {
     pub root: DMatrix<f64>,
 }
 
-/// The update by one interval without numbers, from a root of the covariance of its state.
-pub fn update(node: &Node, l: &DMatrix<f64>, prior: Prior<'_>) -> Update {
+/// The update by one interval without numbers, its noise that which it was given, from a root of the covariance of its state.
+pub fn update(node: &Node, l: &DMatrix<f64>, force: &DVector<f64>) -> Update {
     let n_u = node.a.ncols() + node.b.ncols();
-    let gram = node.weighted(prior.noise);
+    let gram = node.grams.iter().fold(DMatrix::zeros(n_u + 1, n_u + 1), |sum, g| sum + &g.1);
     let zz = gram.view((0, 0), (n_u, n_u)).into_owned();
-    let n = with_unit(rooted(&rooted(&zz, l, prior.force).transpose(), l, prior.force));
-    let hv = rooted(&gram.view((0, n_u), (n_u, 1)).into_owned(), l, prior.force);
+    let n = with_unit(rooted(&rooted(&zz, l, force).transpose(), l, force));
+    let hv = rooted(&gram.view((0, n_u), (n_u, 1)).into_owned(), l, force);
     let zeta = -n.solve(&hv).column(0);
-    let t = beside(&(&node.a * l), &scaled(&node.b, prior.force));
-    let (xi, phi) = (zeta.rows(0, l.ncols()), zeta.rows(l.ncols(), prior.force.len()));
-    Update { state: l * xi, force: phi.component_mul(prior.force), root: root(&n, &t) }
+    let t = beside(&(&node.a * l), &scaled(&node.b, force));
+    let (xi, phi) = (zeta.rows(0, l.ncols()), zeta.rows(l.ncols(), force.len()));
+    Update { state: l * xi, force: phi.component_mul(force), root: root(&n, &t) }
 }
 
 /// 1 + X, factored; X is not negative but for round-off, which is scaled away where it counts.
@@ -315,7 +315,7 @@ mod tests {
                 let mut own_j = s * &state + rows.columns(STATES, FORCES) * &force;
                 let mut own_y = rows.columns(STATES + FORCES, NUMBERS + 1) + s * &offset;
                 for k in 0..SAMPLES {
-                    let factor = prior.noise[usize::from(k > 0)];
+                    let factor = prior.noise[i][usize::from(k > 0)];
                     own_j.row_mut(k).unscale_mut(factor);
                     own_y.row_mut(k).unscale_mut(factor);
                 }
@@ -338,7 +338,8 @@ mod tests {
     }
 
     fn with_prior(check: impl Fn(Prior<'_>)) {
-        let [start, force, noise] = [vec![2.0, 0.5], vec![0.7], vec![1.0, 1.5]].map(DVector::from_vec);
+        let [start, force] = [vec![2.0, 0.5], vec![0.7]].map(DVector::from_vec);
+        let noise: Vec<_> = (0..INTERVALS).map(|i| DVector::from_vec(vec![1.0, 1.5 + i as f64])).collect();
         check(Prior { start: &start, force: &force, noise: &noise });
     }
 
@@ -377,7 +378,10 @@ mod tests {
             let residual = &j * &z + &y * theta.push(1.0);
             let spread = &j * &covariance * j.transpose();
             let all: f64 = (0..residual.len()).map(|i| residual[i].powi(2) + spread[(i, i)]).sum();
-            let told: f64 = found.squares.iter().flatten().map(|(c, s)| s / prior.noise[*c as usize].powi(2)).sum();
+            let over = |(own, noise): (&Vec<(u16, f64)>, &DVector<f64>)| -> f64 {
+                own.iter().map(|(c, s)| s / noise[*c as usize].powi(2)).sum()
+            };
+            let told: f64 = found.squares.iter().zip(prior.noise).map(over).sum();
             assert!((all - told).abs() < 1e-10, "{all} {told}");
         });
     }
@@ -385,7 +389,8 @@ mod tests {
     #[test]
     fn without_forces_a_chain_is_one_free_run() {
         let nodes: Vec<Node> = problem().into_iter().map(|a| a.1).collect();
-        let [start, none, noise] = [vec![2.0, 0.5], vec![0.0], vec![1.0, 1.0]].map(DVector::from_vec);
+        let [start, none] = [vec![2.0, 0.5], vec![0.0]].map(DVector::from_vec);
+        let noise = vec![DVector::from_element(2, 1.0); nodes.len()];
         let prior = Prior { start: &start, force: &none, noise: &noise };
         let found = smooth(&nodes, prior, &DVector::zeros(NUMBERS));
         for i in 1..INTERVALS {

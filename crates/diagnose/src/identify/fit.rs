@@ -2,12 +2,11 @@
 //!
 //! One iteration: every interval about its state, the numbers' columns, numbers and spread by [`super::marginal`], states by the smoother. States follow the
 //! samples whatever the model does, so that no run is ever lost, and the columns are those of the motion that was measured; what remains nonlinear is the
-//! numbers themselves. A step is taken if it lowers the marginal likelihood's −2 log as made linear there, and halved where it does not.
+//! numbers themselves. A step is taken if it lowers the marginal likelihood's −2 log as made linear there, and shortened where it does not.
 
-use super::chain::Prior;
 use super::forces::{Force, first_spread, forces};
-use super::marginal::{Chain, Estimate, Linear, Spread, estimate, score};
-use super::track::{Base, Bases, Column, Frame, Link, Track, coordinates};
+use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor, score};
+use super::track::{Base, Bases, Column, Frame, Link, Told, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
@@ -79,15 +78,16 @@ const KNOTS: std::ops::RangeInclusive<usize> = 24..=48;
 const SAMPLES: usize = 12;
 /// Promised fall of −2 log likelihood below which a fit has converged.
 const CONVERGED: f64 = 0.3;
-/// Most times that a step is halved.
-const HALVINGS: usize = 4;
+/// Most times that a step is shortened, to the half, an eighth, a sixty-fourth …; what is left of it each time is this to the power of the time.
+const HALVINGS: i32 = 4;
+const NEARER: f64 = 0.5;
 /// Steps of the spread: from afar, and near.
 const STEPS: [usize; 2] = [12, 6];
 /// Iterations of states and spread of a model without numbers.
 const SETTLING: usize = 3;
 /// Times that an interval is halved, samples of a channel that it takes, and how many times the usual mean square of a channel's residuals is
 /// missed where a force does not stay what it is.
-const HALVED: usize = 3;
+const HALVED: usize = 5;
 const FEWEST: f64 = 6.0;
 const UNSTEADY: f64 = 4.0;
 /// Largest factor of a mean square that a wrong figure of the noise may stand for.
@@ -143,27 +143,22 @@ impl<'a> Problem<'a> {
         }
         let set = EffectSet::default();
         let built = self.plant.build(&[])?;
-        let mut tracks: Vec<Track> = self.runs.par_iter().map(|r| self.cut(&built, *r)).collect::<Result<_, _>>()?;
+        let tracks: Vec<Track> = self.runs.par_iter().map(|r| self.cut(&built, *r)).collect::<Result<_, _>>()?;
         let freedoms = coordinates(&built, &tracks[0].intervals[0].start);
         let frame = Frame { stage: &self.stage, built: &built, freedoms: &freedoms, forces: &self.forces };
         let typical = frame.link(tracks[0].run, &tracks[0].intervals[self.knots / 2]).ok_or_else(|| self.lost())?;
         let step = |w: &[super::track::Interval]| DVector::from_vec(w[1].start.difference(&w[0].start, &freedoms));
         let steps: Vec<DVector<f64>> = tracks.iter().flat_map(|t| t.intervals.windows(2).map(step)).collect();
-        let spread = Spread {
-            force: first_spread(&freedoms, &steps, &typical.b),
-            noise: DVector::from_element(self.channels.len().max(1), 1.0),
-        };
+        let force = first_spread(&freedoms, &steps, &typical.b);
+        let spread = Spread { force, ..Spread::steady(self.forces.len(), self.channels.len().max(1)) };
         let first = |k: usize| (UNKNOWN / typical.s.column(k).norm()).min(LARGEST);
         let first = DVector::from_iterator(freedoms.len(), (0..freedoms.len()).map(first));
-        let prior = Prior { start: &first, force: &spread.force, noise: &spread.noise };
-        let links: Option<Vec<Vec<Link>>> = tracks.par_iter_mut().map(|t| frame.follow(t, prior, None)).collect();
-        let links = links.ok_or_else(|| self.lost())?.into_iter().map(Arc::new).collect();
-        let none = Fitted {
+        let mut none = Fitted {
             set,
             built,
             freedoms,
             tracks,
-            links,
+            links: Vec::new(),
             first,
             spread,
             score: f64::INFINITY,
@@ -172,6 +167,7 @@ impl<'a> Problem<'a> {
             covariance: DMatrix::zeros(0, 0),
             converged: false,
         };
+        self.follow(&mut none)?;
         self.refined(self.settle(none, SETTLING, false)?)
     }
 
@@ -190,6 +186,7 @@ impl<'a> Problem<'a> {
             }
             let tracks: Vec<Track> =
                 now.tracks.par_iter().zip(&which).map(|(t, w)| frame.halved(t, w)).collect::<Result<_, _>>()?;
+            now.spread.local.clear();
             now = self.settle(Fitted { tracks, links: Vec::new(), ..now }, SETTLING, false)?;
         }
         Ok(now)
@@ -231,7 +228,7 @@ impl<'a> Problem<'a> {
     pub fn along(&self, of: &Fitted, set: &EffectSet) -> Result<Fitted, DiagnoseError> {
         let nominal = self.begin()?;
         let mut now = self.with(&nominal, set.frozen())?;
-        now.spread.clone_from(&of.spread);
+        now.spread = Spread { local: Vec::new(), ..of.spread.clone() };
         self.follow(&mut now)?;
         self.settle(now, SETTLING, true)
     }
@@ -275,7 +272,7 @@ impl<'a> Problem<'a> {
         }
         let mut sizes = first_sizes(&now.set);
         let mut before: Option<Fitted> = None;
-        let mut halved = 0;
+        let mut halved = 0i32;
         for iteration in 0..reach.iterations {
             let variations = vary(self.plant, &now.set, &slots, &sizes)?;
             let made = self.linearise(&mut now, &variations, reach.reuse || iteration > 0)?;
@@ -287,7 +284,7 @@ impl<'a> Problem<'a> {
                     return Ok(Fitted { converged: false, ..last.clone() });
                 }
                 halved += 1;
-                now = self.between(last, &now)?;
+                now = self.between(last, &now, NEARER.powi(halved))?;
                 continue;
             }
             let chains = made.chains(&(0..slots.len()).collect::<Vec<_>>());
@@ -332,10 +329,16 @@ impl<'a> Problem<'a> {
     fn follow(&self, now: &mut Fitted) -> Result<(), DiagnoseError> {
         let mut tracks = now.tracks.clone();
         let frame = self.frame(now);
-        let prior = Prior { start: &now.first, force: &now.spread.force, noise: &now.spread.noise };
+        let channels = self.channels_of(&now.tracks);
         let follow = |(k, track): (usize, &mut Track)| {
             let known = now.links.get(k).map(|links| links.as_slice());
-            frame.follow(track, prior, known).map(Arc::new)
+            let of_interval = |(own, noise): (&Vec<u16>, DVector<f64>)| {
+                DVector::from_iterator(own.len(), own.iter().map(|c| noise[*c as usize]))
+            };
+            let by_channel = now.spread.factors(k, channels[k].len());
+            let factors: Vec<DVector<f64>> = channels[k].iter().zip(by_channel).map(of_interval).collect();
+            let told = Told { start: &now.first, force: &now.spread.force, factors: &factors };
+            frame.follow(track, told, known).map(Arc::new)
         };
         let links: Option<Vec<Arc<Vec<Link>>>> = tracks.par_iter_mut().enumerate().map(follow).collect();
         now.links = links.ok_or_else(|| self.lost())?;
@@ -343,15 +346,15 @@ impl<'a> Problem<'a> {
         Ok(())
     }
 
-    /// Half way between two fits of the same set.
-    fn between(&self, a: &Fitted, b: &Fitted) -> Result<Fitted, DiagnoseError> {
+    /// A share of the way from one fit to another one of the same set.
+    fn between(&self, a: &Fitted, b: &Fitted, share: f64) -> Result<Fitted, DiagnoseError> {
         let slots = a.set.slots();
         let by: Vec<f64> =
-            slots.iter().map(|(m, k)| 0.5 * (b.set.members[*m].1[*k] - a.set.members[*m].1[*k])).collect();
+            slots.iter().map(|(m, k)| share * (b.set.members[*m].1[*k] - a.set.members[*m].1[*k])).collect();
         let set = a.set.moved(&slots, &by);
         let half = self.with(b, set)?;
         let frame = self.frame(&half);
-        let tracks = a.tracks.iter().zip(&b.tracks).map(|(a, b)| frame.between(a, b)).collect();
+        let tracks = a.tracks.iter().zip(&b.tracks).map(|(a, b)| frame.between(a, b, share)).collect();
         Ok(Fitted { tracks, spread: a.spread.clone(), ..half })
     }
 
@@ -402,26 +405,40 @@ impl<'a> Problem<'a> {
         };
         let columns: Vec<_> = now.tracks.par_iter().zip(&bases).map(columns).collect();
         let channels = self.channels_of(&now.tracks);
+        let count = channels.iter().flatten().map(Vec::len).sum();
+        let price = price_of_factor(count, channels.iter().map(Vec::len).sum::<usize>() * self.channels.len());
         let linear = |(k, channels): (usize, Vec<Vec<u16>>)| Linear {
+            run: k,
+            price,
             links: Arc::clone(&links[k]),
             sides: frame.sides(&now.tracks[k], &links[k], &bases[k], &columns[k]),
             channels,
             start: now.first.clone(),
         };
         let runs: Vec<Linear> = channels.into_iter().enumerate().map(linear).collect();
-        let count = runs.iter().flat_map(|r| r.channels.iter()).map(Vec::len).sum();
         now.links = links;
         Ok(Made { runs, count })
     }
 
-    /// What the unknown forces of a fit do to the readings, mean square over intervals, units of noise.
+    /// What the unknown forces of a fit do to the readings, and what these are off by in intervals that are not followed: mean square over intervals,
+    /// units of noise.
     pub fn power(&self, of: &Fitted) -> f64 {
         let own = |(interval, link): (&super::track::Interval, &Link)| -> f64 {
             let each = interval.force.iter().zip(link.f.column_iter());
             each.map(|(force, column)| force * force * column.norm_squared()).sum()
         };
         let pairs = || of.tracks.iter().zip(&of.links).flat_map(|(t, l)| t.intervals.iter().zip(l.iter()));
-        pairs().map(own).sum::<f64>() / pairs().count().max(1) as f64
+        let channels = self.channels_of(&of.tracks);
+        let missed = |(run, channels): (usize, &Vec<Vec<u16>>)| -> f64 {
+            let local = of.spread.local.get(run).map_or(&[][..], Vec::as_slice);
+            let factor = |l: &DVector<f64>, c: usize| if l[c] > 1.0 { l[c] * of.spread.noise[c] } else { 1.0 };
+            let excess = |(own, l): (&Vec<u16>, &DVector<f64>)| -> f64 {
+                own.iter().map(|c| factor(l, *c as usize).powi(2) - 1.0).sum()
+            };
+            channels.iter().zip(local).map(excess).sum()
+        };
+        let missed: f64 = channels.iter().enumerate().map(missed).sum();
+        (pairs().map(own).sum::<f64>() + missed) / pairs().count().max(1) as f64
     }
 
     /// The runs of a fit with their states where the smoother has them.

@@ -7,6 +7,11 @@
 //!
 //! here over-relaxed in the logarithm, which keeps the fixed point and comes there several times sooner; a step that does not lower it is made
 //! plain. κ is never below one: what sensors are known to have they have, and what no force of an interval's length follows comes on top.
+//!
+//! A few intervals may not be followed at all (a joint turns, a drive starts): the channel's n samples there then have a factor λ of their own, which is
+//! likeliest at λ² = Σ ρ²/κ²n. It costs a price P, so that it is one everywhere else:
+//!
+//!   n ln λ² + n + P < Σ ρ²/κ²,     P = ln N + 2 ln(intervals × channels)
 
 use super::chain::{Marginal, Node, Prior, Smoothed, eliminate, smooth};
 use super::track::{Link, Side};
@@ -18,6 +23,10 @@ use std::sync::Arc;
 /// A run made linear, sample by sample.
 #[derive(Clone, Debug)]
 pub struct Linear {
+    /// Its number among the runs that are fitted.
+    pub run: usize,
+    /// Price of a factor of a single interval and channel.
+    pub price: f64,
     /// Derivatives by states and forces.
     pub links: Arc<Vec<Link>>,
     /// Columns of numbers and residuals.
@@ -31,6 +40,8 @@ pub struct Linear {
 /// The same by products of its columns.
 #[derive(Clone, Debug)]
 pub struct Chain {
+    run: usize,
+    price: f64,
     nodes: Vec<Node>,
     start: DVector<f64>,
     /// Residuals by channel, interval by interval.
@@ -44,6 +55,8 @@ pub struct Spread {
     pub force: DVector<f64>,
     /// Factor of the noise, by channel.
     pub noise: DVector<f64>,
+    /// A further factor λ, by run, interval and channel; one where there is none.
+    pub local: Vec<Vec<DVector<f64>>>,
 }
 
 /// Numbers and spread at their best.
@@ -67,6 +80,11 @@ const RELAXED: f64 = 1.8;
 const ENOUGH: f64 = 0.1;
 /// Most that one step changes a variance.
 const LEAP: [f64; 2] = [1e-4, 1e8];
+
+/// Price of a factor of a single interval and channel: one number, and that it may be any of so many.
+pub fn price_of_factor(count: usize, factors: usize) -> f64 {
+    (count.max(2) as f64).ln() + 2.0 * (factors.max(1) as f64).ln()
+}
 
 impl Linear {
     /// Products of the columns of some numbers and of the residual.
@@ -100,12 +118,13 @@ impl Linear {
             node.grams.iter().map(|g| of(g.0)).collect()
         };
         let samples = nodes.iter().zip(&self.channels).map(count).collect();
-        Chain { nodes, start: self.start.clone(), samples }
+        Chain { run: self.run, price: self.price, nodes, start: self.start.clone(), samples }
     }
 
     /// Products of very many columns at one spread.
     pub fn summed(&self, columns: &[usize], spread: &Spread) -> Chain {
-        let node = |((link, side), channels): ((&Link, &Side), &Vec<u16>)| {
+        let factors = spread.factors(self.run, self.channels.len());
+        let node = |(((link, side), channels), factor): (((&Link, &Side), &Vec<u16>), &DVector<f64>)| {
             let kept: Vec<usize> = columns.iter().copied().chain([side.y.ncols() - 1]).collect();
             let (n_x, n_f) = (link.s.ncols(), link.f.ncols());
             let mut all = DMatrix::zeros(channels.len(), n_x + n_f + kept.len());
@@ -113,7 +132,7 @@ impl Linear {
             all.columns_mut(n_x, n_f).copy_from(&link.f);
             kept.iter().enumerate().for_each(|(k, c)| all.column_mut(n_x + n_f + k).copy_from(&side.y.column(*c)));
             for (i, channel) in channels.iter().enumerate() {
-                let factor = spread.noise[*channel as usize];
+                let factor = factor[*channel as usize];
                 if factor != 1.0 {
                     all.row_mut(i).unscale_mut(factor);
                 }
@@ -121,26 +140,27 @@ impl Linear {
             let gram = all.tr_mul(&all);
             Node { grams: vec![(0, gram)], a: link.a.clone(), b: link.b.clone(), d: side.d.select_columns(&kept) }
         };
-        let nodes = self.links.par_iter().zip(&self.sides).zip(&self.channels).map(node).collect();
-        Chain { nodes, start: self.start.clone(), samples: Vec::new() }
+        let nodes = self.links.par_iter().zip(&self.sides).zip(&self.channels).zip(&factors).map(node).collect();
+        Chain { run: self.run, price: self.price, nodes, start: self.start.clone(), samples: Vec::new() }
     }
 }
 
 impl Chain {
-    fn prior<'a>(&'a self, spread: &'a Spread) -> Prior<'a> {
-        Prior { start: &self.start, force: &spread.force, noise: &spread.noise }
-    }
-
     /// States and forces at some numbers.
     pub fn smoothed(&self, spread: &Spread, theta: &DVector<f64>) -> Smoothed {
-        smooth(&self.nodes, self.prior(spread), theta)
+        let noise = spread.factors(self.run, self.nodes.len());
+        smooth(&self.nodes, Prior { start: &self.start, force: &spread.force, noise: &noise }, theta)
     }
 
     /// Products of the numbers' columns, states and forces eliminated.
     fn products(&self, spread: &Spread) -> Marginal {
-        let found = eliminate(&self.nodes, self.prior(spread));
-        let log_noise: f64 = self.samples.iter().flatten().map(|(c, n)| 2.0 * n * spread.noise[*c as usize].ln()).sum();
-        Marginal { log_det: found.log_det + log_noise, ..found }
+        let noise = spread.factors(self.run, self.nodes.len());
+        let found = eliminate(&self.nodes, Prior { start: &self.start, force: &spread.force, noise: &noise });
+        let log = |(own, noise): (&Vec<(u16, f64)>, &DVector<f64>)| -> f64 {
+            own.iter().map(|(c, n)| 2.0 * n * noise[*c as usize].ln()).sum()
+        };
+        let log_noise: f64 = self.samples.iter().zip(&noise).map(log).sum();
+        Marginal { log_det: found.log_det + log_noise + self.price * spread.local_of(self.run), ..found }
     }
 }
 
@@ -151,11 +171,15 @@ pub fn products(runs: &[Chain], spread: &Spread) -> Vec<Marginal> {
 
 /// Products of very many columns over all runs, at one spread.
 pub fn wide_products(runs: &[Linear], columns: &[usize], spread: &Spread) -> Marginal {
-    let plain = Spread { noise: DVector::from_element(spread.noise.len(), 1.0), ..spread.clone() };
+    let plain = Spread { force: spread.force.clone(), ..Spread::steady(spread.force.len(), spread.noise.len()) };
     let of = |run: &Linear| {
         let found = run.summed(columns, spread).products(&plain);
-        let log_noise: f64 = run.channels.iter().flatten().map(|c| 2.0 * spread.noise[*c as usize].ln()).sum();
-        Marginal { log_det: found.log_det + log_noise, ..found }
+        let factors = spread.factors(run.run, run.channels.len());
+        let log = |(own, noise): (&Vec<u16>, &DVector<f64>)| -> f64 {
+            own.iter().map(|c| 2.0 * noise[*c as usize].ln()).sum()
+        };
+        let log_noise: f64 = run.channels.iter().zip(&factors).map(log).sum();
+        Marginal { log_det: found.log_det + log_noise + run.price * spread.local_of(run.run), ..found }
     };
     sum(&runs.par_iter().map(of).collect::<Vec<_>>())
 }
@@ -232,16 +256,34 @@ const SHRINKING: f64 = 0.7;
 const NONE: f64 = 1e-3;
 
 impl Spread {
+    /// No unknown forces, and noise as it is known.
+    pub fn steady(forces: usize, channels: usize) -> Self {
+        Self { force: DVector::zeros(forces), noise: DVector::from_element(channels, 1.0), local: Vec::new() }
+    }
+
+    /// Factor of the noise of every interval of a run, by channel.
+    pub fn factors(&self, run: usize, intervals: usize) -> Vec<DVector<f64>> {
+        let local = |i: usize| self.local.get(run).and_then(|own| own.get(i));
+        let of = |i: usize| local(i).map_or_else(|| self.noise.clone(), |l| self.noise.component_mul(l));
+        (0..intervals).map(of).collect()
+    }
+
+    /// How many factors of single intervals there are in a run.
+    fn local_of(&self, run: usize) -> f64 {
+        self.local.get(run).map_or(0, |own| own.iter().flat_map(|of| of.iter()).filter(|l| **l > 1.0).count()) as f64
+    }
+
     fn grown(&self, by: &Self, power: f64) -> Self {
         let grow = |x: f64, g: f64| x * g.powf(0.5 * power);
         Self {
             force: self.force.zip_map(&by.force, grow),
             noise: self.noise.zip_map(&by.noise, |x, g| grow(x, g).max(1.0)),
+            local: by.local.clone(),
         }
     }
 }
 
-/// Growth of all variances in one step.
+/// Growth of all variances in one step, and the factors of single intervals as they are then.
 fn growth(runs: &[Chain], now: &Estimate) -> Spread {
     let (n_f, n_c) = (now.spread.force.len(), now.spread.noise.len());
     let of = |run: &Chain| {
@@ -251,19 +293,34 @@ fn growth(runs: &[Chain], now: &Estimate) -> Spread {
         for (f, v) in s.forces.iter().zip(&s.variances) {
             sums.force += f.component_mul(f) + v;
         }
-        for (square, samples) in s.squares.iter().flatten().zip(run.samples.iter().flatten()) {
-            let channel = square.0 as usize;
-            sums.noise[channel] += square.1 / now.spread.noise[channel].powi(2);
-            sums.samples[channel] += samples.1;
+        let mut local = Vec::with_capacity(s.squares.len());
+        for (squares, samples) in s.squares.iter().zip(&run.samples) {
+            let mut own = DVector::from_element(n_c, 1.0);
+            for ((channel, square), (_, n)) in squares.iter().zip(samples) {
+                let channel = *channel as usize;
+                let square = square / now.spread.noise[channel].powi(2);
+                own[channel] = factor_of_its_own(square, *n, run.price);
+                sums.noise[channel] += square / own[channel].powi(2);
+                sums.samples[channel] += n;
+            }
+            local.push(own);
         }
-        sums
+        (sums, local)
     };
-    let parts: Vec<Squares> = runs.par_iter().map(of).collect();
+    let (parts, local): (Vec<Squares>, Vec<_>) = runs.par_iter().map(of).unzip();
     let all = parts.iter().fold(Squares::new(n_f, n_c), Squares::plus);
     let ratio = |x: f64| if x.is_finite() { x.clamp(LEAP[0], LEAP[1]) } else { 1.0 };
     let of_force = |s: f64, q: f64| if q > 0.0 { ratio(s / (all.intervals * q * q)) } else { 1.0 };
     let of_noise = |s: f64, n: f64| if n > 0.0 { ratio(s / n) } else { 1.0 };
-    Spread { force: all.force.zip_map(&now.spread.force, of_force), noise: all.noise.zip_map(&all.samples, of_noise) }
+    let (force, noise) = (all.force.zip_map(&now.spread.force, of_force), all.noise.zip_map(&all.samples, of_noise));
+    Spread { force, noise, local }
+}
+
+/// λ of n samples with so large a sum of squares: one where a factor is not worth its price.
+fn factor_of_its_own(square: f64, n: f64, price: f64) -> f64 {
+    let mean = square / n.max(1.0);
+    let is_worth_it = mean > 1.0 && n * (mean - 1.0 - mean.ln()) > price;
+    if is_worth_it { mean.sqrt() } else { 1.0 }
 }
 
 /// Sums of squares, by force and by channel.
@@ -325,14 +382,22 @@ mod tests {
         }
         let channels = vec![vec![0; SAMPLES]; INTERVALS];
         let start = DVector::from_element(2, 10.0);
-        Linear { links: Arc::new(links), sides, channels, start }.chain(&[0])
+        Linear {
+            run: 0,
+            price: price_of_factor(INTERVALS * SAMPLES, INTERVALS),
+            links: Arc::new(links),
+            sides,
+            channels,
+            start,
+        }
+        .chain(&[0])
     }
 
     /// Readings per unit of noise.
     const SCALE: f64 = 1e4;
 
     fn at_first() -> Spread {
-        Spread { force: DVector::from_element(1, 10.0), noise: DVector::from_element(1, 1.0) }
+        Spread { force: DVector::from_element(1, 10.0), ..Spread::steady(1, 1) }
     }
 
     #[test]
@@ -344,6 +409,26 @@ mod tests {
         let error = found.covariance[(0, 0)].sqrt();
         assert!((error / (0.3 / 200.0f64.sqrt()) - 1.0).abs() < 0.2, "as of the mean of so many forces: {error}");
         assert!((found.theta[0] - 0.5).abs() < 3.0 * error, "{}", found.theta[0]);
+    }
+
+    /// The same with one interval that nothing follows.
+    fn with_a_bump(mut chain: Chain) -> Chain {
+        let all = &mut chain.nodes[INTERVALS / 2].grams[0].1;
+        let last = all.ncols() - 1;
+        // Residuals that no state and no force makes.
+        all[(last, last)] += 1e8;
+        chain
+    }
+
+    #[test]
+    fn an_interval_that_is_not_followed_has_a_factor_of_its_own_and_no_other_has() {
+        let found = estimate(&[with_a_bump(pushed(0.3, 1.0, 0.5))], None, &at_first(), 40);
+        let local: Vec<f64> = found.spread.local[0].iter().map(|l| l[0]).collect();
+        let mean = 1e8 / SAMPLES as f64;
+        let own = local[INTERVALS / 2] * found.spread.noise[0];
+        assert!((own / mean.sqrt() - 1.0).abs() < 0.01, "{own}");
+        assert_eq!(local.iter().filter(|l| **l > 1.0).count(), 1);
+        assert!((found.spread.noise[0] - 1.0).abs() < 0.06 && (found.spread.force[0] / 0.3 - 1.0).abs() < 0.15);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A run cut at knots, simulated interval by interval from states of their own, and made linear.
 
-use super::chain::{self, Node, Prior, Smoothed};
+use super::chain::{self, Node, Smoothed};
 use super::forces::{Force, has_memory, pushing};
 use crate::error::DiagnoseError;
 use crate::guess::guess;
@@ -217,12 +217,13 @@ impl Frame<'_> {
 
     /// Follows a run from its first state by what its samples say (extended Kalman filter, each interval about its own estimate), and leaves the states there; the derivatives
     /// on the way, or none where a replay left the range of numbers.
-    pub fn follow(&self, track: &mut Track, prior: Prior<'_>, known: Option<&[Link]>) -> Option<Vec<Link>> {
+    pub fn follow(&self, track: &mut Track, told: Told<'_>, known: Option<&[Link]>) -> Option<Vec<Link>> {
         let mut links = Vec::new();
-        let mut root = DMatrix::from_diagonal(prior.start);
+        let mut root = DMatrix::from_diagonal(told.start);
         for i in 0..track.intervals.len() {
             let known = known.map(|links| &links[i]);
-            let passed = self.pass(track.run, &mut track.intervals[i], (&root, prior), (i == 0, known))?;
+            let passed =
+                self.pass(track.run, &mut track.intervals[i], (&root, told.force, &told.factors[i]), (i == 0, known))?;
             root = passed.root;
             links.push(passed.link);
             if let [this, next, ..] = &mut track.intervals[i..] {
@@ -239,7 +240,7 @@ impl Frame<'_> {
         &self,
         run: usize,
         interval: &mut Interval,
-        (root, prior): (&DMatrix<f64>, Prior<'_>),
+        (root, force, factors): (&DMatrix<f64>, &DVector<f64>, &DVector<f64>),
         (is_first, known): (bool, Option<&Link>),
     ) -> Option<Passed> {
         let expected = interval.start.clone();
@@ -251,7 +252,7 @@ impl Frame<'_> {
             }
             let taken = link.as_ref()?;
             let off = DVector::from_vec(expected.difference(&interval.start, self.freedoms));
-            let update = chain::update(&alone(taken, (&r, &off, &interval.force)), root, prior);
+            let update = chain::update(&alone(taken, (&r, &off, &interval.force), factors), root, force);
             let (state, force) = (update.state + off, &update.force - &interval.force);
             interval.start = interval.start.retract(self.freedoms, state.as_slice());
             interval.force = update.force;
@@ -315,13 +316,13 @@ impl Frame<'_> {
         Track { run: track.run, intervals }.onto(self.stage, self.built)
     }
 
-    /// Half way between two courses of the same run.
-    pub fn between(&self, a: &Track, b: &Track) -> Track {
+    /// A share of the way from one course of a run to another one.
+    pub fn between(&self, a: &Track, b: &Track, share: f64) -> Track {
         let mut between = a.clone();
         for (interval, b) in between.intervals.iter_mut().zip(&b.intervals) {
-            let by = DVector::from_vec(b.start.difference(&interval.start, self.freedoms)) * 0.5;
+            let by = DVector::from_vec(b.start.difference(&interval.start, self.freedoms)) * share;
             interval.start = interval.start.retract(self.freedoms, by.as_slice());
-            interval.force = 0.5 * (&interval.force + &b.force);
+            interval.force = (1.0 - share) * &interval.force + share * &b.force;
         }
         between
     }
@@ -358,6 +359,17 @@ const SAME: f64 = 1e-9;
 const PASSES: usize = 2;
 const FIRST: usize = 3;
 
+/// What is known of a run before it is followed.
+#[derive(Clone, Copy, Debug)]
+pub struct Told<'a> {
+    /// Standard deviation of the first state, by coordinate.
+    pub start: &'a DVector<f64>,
+    /// Standard deviation of the unknown force of an interval, by coordinate.
+    pub force: &'a DVector<f64>,
+    /// Factor of the noise, by interval and residual.
+    pub factors: &'a [DVector<f64>],
+}
+
 /// An interval that was passed: its derivatives, its end, and a root of the covariance of that.
 struct Passed {
     link: Link,
@@ -374,11 +386,12 @@ fn matrices(columns: &[Column], rows: usize, n_x: usize) -> (DMatrix<f64>, DMatr
 
 /// An interval without numbers, its channels taken together, about the state that was expected (`off` from where its residuals were taken) and without the
 /// force that pushed it there.
-fn alone(link: &Link, (r, off, force): (&DVector<f64>, &DVector<f64>, &DVector<f64>)) -> Node {
+fn alone(link: &Link, (r, off, force): (&DVector<f64>, &DVector<f64>, &DVector<f64>), factors: &DVector<f64>) -> Node {
     let (n_x, n_f) = (link.s.ncols(), link.f.ncols());
     let mut all = DMatrix::zeros(r.len(), n_x + n_f + 1);
     all.columns_mut(0, n_x).copy_from(&link.s);
     all.columns_mut(n_x, n_f).copy_from(&link.f);
     all.column_mut(n_x + n_f).copy_from(&(r + &link.s * off - &link.f * force));
+    all.column_iter_mut().for_each(|mut column| column.component_div_assign(factors));
     Node { grams: vec![(0, all.tr_mul(&all))], a: link.a.clone(), b: link.b.clone(), d: DMatrix::zeros(n_x, 1) }
 }

@@ -234,7 +234,7 @@ mod tests {
         }
         let variances = vec![DVector::from_element(JOINTS, 1e-6); INTERVALS];
         let start = DVector::from_element(1, 1.0);
-        let runs = vec![Linear { links: Arc::new(links), sides, channels: Vec::new(), start }];
+        let runs = vec![Linear { run: 0, price: 30.0, links: Arc::new(links), sides, channels: Vec::new(), start }];
         let smoothed = Smoothed { forces, variances, ..Smoothed::default() };
         Regression::new(&pool(), &runs, 0, &[smoothed]).grow(3)
     }

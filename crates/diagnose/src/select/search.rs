@@ -244,7 +244,8 @@ fn bare(problem: &Problem<'_>, fit: &Fitted) -> Result<Vec<Chain>, DiagnoseError
 fn left_of(problem: &Problem<'_>, fit: &Fitted, bare: &[Chain]) -> Remainder {
     let at = |spread: &Spread| score(bare, spread);
     let stated = (1.0 + problem.stage.doubt).sqrt();
-    let silent = Spread { force: &fit.spread.force * 0.0, noise: fit.spread.noise.map(|x| x.min(stated)) };
+    let noise = fit.spread.noise.map(|x| x.min(stated));
+    let silent = Spread { force: &fit.spread.force * 0.0, noise, local: Vec::new() };
     let (mean, variance) = (0.5 * problem.variances() as f64, 1.25 * problem.variances() as f64);
     // A gamma distribution of that mean and variance: the cube root is nearly normal.
     let shape = mean * mean / variance;

@@ -112,7 +112,7 @@ impl Ground<'_> {
 
     /// −2 log likelihood of a model that leaves noise alone.
     fn silent(&self, members: &[usize], spread: &Spread) -> f64 {
-        let none = Spread { force: &spread.force * 0.0, noise: spread.noise.map(|_| 1.0) };
+        let none = Spread::steady(spread.force.len(), spread.noise.len());
         sum(&products(&self.chains(&self.columns(members)), &none)).log_det + self.count as f64
     }
 
@@ -267,13 +267,20 @@ mod tests {
             sides.push(Side { y, d: DMatrix::zeros(1, 4) });
         }
         let channels = vec![vec![0; SAMPLES]; INTERVALS];
-        vec![Linear { links: Arc::new(links), sides, channels, start: DVector::from_element(1, 1.0) }]
+        vec![Linear {
+            run: 0,
+            price: 30.0,
+            links: Arc::new(links),
+            sides,
+            channels,
+            start: DVector::from_element(1, 1.0),
+        }]
     }
 
     fn best(truth: [f64; 2]) -> Vec<usize> {
         let (runs, pool, ridge) = (runs(truth), pool(), DMatrix::zeros(1, 1));
         let ground = Ground { runs: &runs, ridge: &ridge, pool: &pool, active: 0, count: INTERVALS * SAMPLES };
-        let spread = Spread { force: DVector::from_element(1, 1e-2), noise: DVector::from_element(1, 1.0) };
+        let spread = Spread { force: DVector::from_element(1, 1e-2), ..Spread::steady(1, 1) };
         let none = estimate(&ground.chains(&[]), None, &spread, 10);
         let grown = ground.grow(&none, 3);
         grown
