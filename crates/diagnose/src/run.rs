@@ -208,7 +208,7 @@ fn diagnose_in(
         timings: clock.timings,
         discretisation,
     };
-    Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder))
+    Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario, &set.folder))
 }
 
 /// The same along whole runs; none where parts touch.
@@ -264,7 +264,7 @@ fn diagnose_whole(
         timings: clock.timings,
         discretisation,
     };
-    Ok(Some(tell::tell(&findings, &stage, &inspection, &plant.scenario.name, &set.folder)))
+    Ok(Some(tell::tell(&findings, &stage, &inspection, &plant.scenario, &set.folder)))
 }
 
 /// What whole runs and windows are predicted to be, by the nominal and by the corrected model.
@@ -305,7 +305,8 @@ fn verdict_along(
 ) -> Verdict {
     let [before, after] = course.left;
     if !found.set.has_findings() {
-        return if before.rise > before.bound { Verdict::Unknown } else { Verdict::NoMismatch };
+        let is_noise = before.rise <= before.bound || after.rise <= after.bound;
+        return if is_noise { Verdict::NoMismatch } else { Verdict::Unknown };
     }
     let [nominal, corrected] = judgement.rms(!follows, |run| found.has_run(run));
     let left = (corrected * corrected - 1.0) / (nominal * nominal - 1.0).max(1e-9);

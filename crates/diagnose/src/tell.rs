@@ -1,6 +1,7 @@
 //! From findings to the diagnosis and its evidence.
 
 use crate::accuracy::errors;
+use crate::along::USUAL;
 use crate::condition::{self, Features, find_features};
 use crate::diagnosis::{Diagnosis, FORMAT, Found, Located as LocatedPlace, Remainder, Rival, Role, StdErr, Verdict};
 use crate::evidence::{
@@ -12,6 +13,8 @@ use crate::run::Findings;
 use crate::vocabulary::unit;
 use nalgebra::DMatrix;
 use record::inspect::Inspection;
+use scenario::Scenario;
+use scenario::spec::Tolerance;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -20,7 +23,7 @@ pub(crate) fn tell(
     findings: &Findings,
     stage: &Stage<'_>,
     inspection: &Inspection,
-    scenario: &str,
+    scenario: &Scenario,
     folder: &Path,
 ) -> (Diagnosis, Evidence) {
     let found =
@@ -29,7 +32,7 @@ pub(crate) fn tell(
     let recording = folder.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let diagnosis = Diagnosis {
         format: FORMAT,
-        scenario: scenario.to_owned(),
+        scenario: scenario.name.clone(),
         recording,
         verdict: findings.verdict,
         located: located(findings, stage, &features),
@@ -45,7 +48,7 @@ pub(crate) fn tell(
             .filter(|r| r.severity > record::Severity::Note)
             .map(|r| r.what.clone())
             .chain(findings.said.iter().cloned())
-            .chain(said_of_tolerances(findings))
+            .chain(said_of_tolerances(findings, &scenario.tolerance))
             .chain(lost_runs(findings, stage))
             .collect(),
     };
@@ -134,15 +137,23 @@ fn covariance_of(findings: &Findings, member: usize) -> DMatrix<f64> {
 }
 
 /// How many they are, and which has moved most.
-fn said_of_tolerances(findings: &Findings) -> Option<String> {
+fn said_of_tolerances(findings: &Findings, tolerance: &Tolerance) -> Option<String> {
     let members: Vec<_> = findings.found.set.members.iter().filter(|(h, _)| h.is_tolerated()).collect();
     let moved = |(h, x): &&(Member, Vec<f64>)| {
         let of = |k: usize| (x[k] - h.coordinates[k].neutral).abs() / h.tolerance[k];
         (0..x.len()).filter(|k| h.tolerance[*k] > 0.0).map(of).fold(0.0, f64::max)
     };
     let most = members.iter().copied().max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
+    let given = match *tolerance == Tolerance::default() {
+        true => format!(
+            "what is usual, for the scenario gives no [tolerance] (masses {} %, centres {} mm)",
+            100.0 * USUAL.mass,
+            1000.0 * USUAL.com_m
+        ),
+        false => "the tolerances of the scenario".to_owned(),
+    };
     Some(format!(
-        "{} nominal numbers or vectors were free within the tolerances of the scenario; {} has moved most, by {:.1} standard deviations.",
+        "{} nominal numbers or vectors were free within {given}; {} has moved most, by {:.1} standard deviations.",
         members.len(),
         most.0.title(),
         moved(&most)

@@ -48,6 +48,8 @@ pub struct Fitted {
     pub tracks: Vec<Track>,
     /// Derivatives by states and forces, as last taken.
     pub links: Vec<Arc<Vec<Link>>>,
+    /// Columns of the numbers that only move within their tolerances, run by run: they change little, and are taken once.
+    pub steady: Vec<Arc<Vec<Vec<Column>>>>,
     /// Prior standard deviations of a first state.
     pub first: DVector<f64>,
     /// Spread of forces and noise.
@@ -159,6 +161,7 @@ impl<'a> Problem<'a> {
             freedoms,
             tracks,
             links: Vec::new(),
+            steady: Vec::new(),
             first,
             spread,
             score: f64::INFINITY,
@@ -221,7 +224,7 @@ impl<'a> Problem<'a> {
     /// The same fit on other samples of the same runs.
     pub fn onto(&self, of: &Fitted) -> Result<Fitted, DiagnoseError> {
         let tracks = of.tracks.iter().map(|t| t.onto(&self.stage, &of.built)).collect::<Result<_, _>>()?;
-        Ok(Fitted { tracks, links: Vec::new(), ..of.clone() })
+        Ok(Fitted { tracks, links: Vec::new(), steady: Vec::new(), ..of.clone() })
     }
 
     /// A set along other runs than those that it was fitted to, its numbers as they are.
@@ -370,7 +373,7 @@ impl<'a> Problem<'a> {
         let first = DVector::from_iterator(freedoms.len(), freedoms.iter().map(first));
         let mut now = Fitted { set, built, freedoms, first, ..from.clone() };
         if !is_same {
-            now.links = Vec::new();
+            (now.links, now.steady) = (Vec::new(), Vec::new());
         }
         now.tracks = {
             let frame = self.frame(&now);
@@ -383,7 +386,7 @@ impl<'a> Problem<'a> {
             a.intervals.iter().zip(&b.intervals).all(|(a, b)| a.members.len() == b.members.len())
         };
         if !told.iter().zip(&now.tracks).all(is_told_alike) {
-            (now.tracks, now.links) = (told, Vec::new());
+            (now.tracks, now.links, now.steady) = (told, Vec::new(), Vec::new());
         }
         Ok(now)
     }
@@ -400,10 +403,11 @@ impl<'a> Problem<'a> {
                 links.ok_or_else(|| self.lost())?.into_iter().map(Arc::new).collect()
             }
         };
-        let columns = |(t, b): (&Track, &Bases)| -> Vec<Vec<Column>> {
-            variations.par_iter().map(|v| frame.columns(t, b, v)).collect()
+        let (own, steady) = self.columns(now, &bases, variations);
+        let columns = |run: usize| -> Vec<&Vec<Column>> {
+            let (mut own, mut steady) = (own[run].iter(), steady.get(run).into_iter().flat_map(|s| s.iter()));
+            variations.iter().filter_map(|v| if v.is_tolerated { steady.next() } else { own.next() }).collect()
         };
-        let columns: Vec<_> = now.tracks.par_iter().zip(&bases).map(columns).collect();
         let channels = self.channels_of(&now.tracks);
         let count = channels.iter().flatten().map(Vec::len).sum();
         let price = price_of_factor(count, channels.iter().map(Vec::len).sum::<usize>() * self.channels.len());
@@ -411,13 +415,32 @@ impl<'a> Problem<'a> {
             run: k,
             price,
             links: Arc::clone(&links[k]),
-            sides: frame.sides(&now.tracks[k], &links[k], &bases[k], &columns[k]),
+            sides: frame.sides(&now.tracks[k], &links[k], &bases[k], &columns(k)),
             channels,
             start: now.first.clone(),
         };
         let runs: Vec<Linear> = channels.into_iter().enumerate().map(linear).collect();
-        now.links = links;
+        (now.links, now.steady) = (links, steady);
         Ok(Made { runs, count })
+    }
+
+    /// Columns of some numbers, run by run: those that are taken each time, and those that are taken once.
+    fn columns(
+        &self,
+        now: &Fitted,
+        bases: &[Bases],
+        variations: &[Variation],
+    ) -> (Vec<Vec<Vec<Column>>>, Vec<Arc<Vec<Vec<Column>>>>) {
+        let frame = self.frame(now);
+        let of = |is_tolerated: bool| -> Vec<Vec<Vec<Column>>> {
+            let taken: Vec<&Variation> = variations.iter().filter(|v| v.is_tolerated == is_tolerated).collect();
+            let columns = |(t, b): (&Track, &Bases)| taken.par_iter().map(|v| frame.columns(t, b, v)).collect();
+            now.tracks.par_iter().zip(bases).map(columns).collect()
+        };
+        let count = variations.iter().filter(|v| v.is_tolerated).count();
+        let is_known =
+            count == 0 || now.steady.len() == now.tracks.len() && now.steady.iter().all(|s| s.len() == count);
+        (of(false), if is_known { now.steady.clone() } else { of(true).into_iter().map(Arc::new).collect() })
     }
 
     /// What the unknown forces of a fit do to the readings, and what these are off by in intervals that are not followed: mean square over intervals,

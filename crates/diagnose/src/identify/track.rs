@@ -270,7 +270,7 @@ impl Frame<'_> {
     }
 
     /// Residuals and defects of a run, as they would be without the forces that push it, beside columns of numbers.
-    pub fn sides(&self, track: &Track, links: &[Link], bases: &Bases, columns: &[Vec<Column>]) -> Vec<Side> {
+    pub fn sides(&self, track: &Track, links: &[Link], bases: &Bases, columns: &[&Vec<Column>]) -> Vec<Side> {
         let n_x = self.freedoms.len();
         let of = |i: usize| {
             let (r, end) = &bases.exact[i];

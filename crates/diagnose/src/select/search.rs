@@ -83,11 +83,12 @@ pub fn criterion(fit: &Fitted, many: usize) -> f64 {
     fit.score + fit.set.members.iter().map(|(h, _)| price(h, fit.count, many)).sum::<f64>()
 }
 
-/// Searches for what a nominal model leaves out; `hypotheses` of a model.
+/// Searches for what a nominal model leaves out; `hypotheses` of a model, and the nominal numbers that may stand for what is left.
 pub fn search(
     problem: &Problem<'_>,
     nominal: Fitted,
     hypotheses: &dyn Fn(&Fitted) -> Vec<Hypothesis>,
+    mut numbers: Option<EffectSet>,
 ) -> Result<Found, DiagnoseError> {
     let watch = problem.stage.work.watch;
     let mut now = nominal.clone();
@@ -104,6 +105,12 @@ pub fn search(
         if room == 0 || round > 0 && is_done() || problem.stage.work.is_spent(Until::Search) {
             break;
         }
+        if round > 0 && problem.power(&now) < SMALL * all {
+            if let Some(next) = corrected(problem, &now, numbers.take(), (many, all, cheapest))? {
+                now = next;
+                continue;
+            }
+        }
         let Looked { pool, grown, spoken } = look(problem, &mut now, hypotheses, room.min(AT_ONCE))?;
         if round == 0 {
             (found.shown, found.left) = (shown(&pool, &grown), grown.left);
@@ -111,17 +118,42 @@ pub fn search(
         let bounds = Bounds { round, many, cheapest, all };
         let proposals = proposals(&pool, &now, &grown.sets, &spoken);
         let best = fit_sets(problem, &now, (&pool, proposals), bounds, &mut found.tried)?;
-        let Some(best) = best else { break };
         // What takes little of what an accepted set leaves stands for something that is not in the library.
         let here = problem.power(&now);
-        if round > 0 && problem.power(&best) > (1.0 - further(here, all)) * here {
-            break;
-        }
-        now = without_idle(problem, best, (many, all))?;
+        let takes_enough = |best: &Fitted| round == 0 || problem.power(best) <= (1.0 - further(here, all)) * here;
+        now = match best.filter(takes_enough) {
+            Some(best) => without_idle(problem, best, (many, all))?,
+            None => match corrected(problem, &now, numbers.take(), (many, all, cheapest))? {
+                Some(next) => next,
+                None => break,
+            },
+        };
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
     found.best = now;
     Ok(found)
+}
+
+/// A fit with many nominal numbers free within what is usual, where that takes most of what is left: small errors of all of them together look like
+/// no single effect.
+fn corrected(
+    problem: &Problem<'_>,
+    now: &Fitted,
+    numbers: Option<EffectSet>,
+    (many, all, cheapest): (usize, f64, f64),
+) -> Result<Option<Fitted>, DiagnoseError> {
+    let Some(numbers) = numbers.filter(|n| !n.members.is_empty()) else { return Ok(None) };
+    let is_new = |(h, _): &&(Hypothesis, Vec<f64>)| now.set.members.iter().all(|(m, _)| m.title() != h.title());
+    let set = numbers.members.iter().filter(is_new).fold(now.set.clone(), |set, (h, x)| set.with(h, x));
+    let Ok(next) = problem.fit(now, set, LOOK) else { return Ok(None) };
+    let (fall, power, here) = (criterion(now, many) - criterion(&next, many), problem.power(&next), problem.power(now));
+    let said =
+        format!("  nominal numbers within what is usual: criterion {:.1}, left {:.2} %", -fall, 100.0 * power / here);
+    problem.stage.work.watch.step(&said);
+    if fall < cheapest || power > (1.0 - FURTHER[1]) * here {
+        return Ok(None);
+    }
+    Ok(Some(without_idle(problem, to_the_end(problem, next), (many, all))?))
 }
 
 /// Share of what unknown forces do beside a set that one more effect has to take.
@@ -376,7 +408,9 @@ fn to_the_end(problem: &Problem<'_>, mut now: Fitted) -> Fitted {
 
 /// A fit without members that are not worth their price.
 fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64)) -> Result<Fitted, DiagnoseError> {
-    while now.set.findings().count() > 1 {
+    // Where nominal numbers are free there may be nothing beside them.
+    let least = usize::from(!now.set.members.iter().any(|(h, _)| h.is_tolerated()));
+    while now.set.findings().count() > least {
         let mut better = None;
         for m in (0..now.set.members.len()).rev().filter(|m| !now.set.members[*m].0.is_tolerated()) {
             let Ok(glance) = problem.fit(&now, now.set.without(m), GLANCE) else { continue };
