@@ -4,7 +4,7 @@
 //!
 //!   ρᵢ = Sᵢ δsᵢ + Fᵢ fᵢ + Yᵢ y,        Yᵢ = (∂r/∂θ, r)           residuals, units of noise
 //!   δsᵢ₊₁ = Aᵢ δsᵢ + Bᵢ fᵢ + Dᵢ y,      Dᵢ = (∂end/∂θ, defect)    continuity
-//!   fᵢ ~ N(0, diag q²),   δs₀ ~ N(0, L₀ L₀ᵀ)
+//!   fᵢ ~ N(0, diag qᵢ²),   δs₀ ~ N(0, L₀ L₀ᵀ)
 //!
 //! With δsᵢ = mᵢ y + Lᵢ ξ, fᵢ = q φ and ζ = (ξ, φ) ~ N(0, 1) one interval costs a least-squares problem with a unit prior (square-root covariance
 //! filter: Kaminski, Bryson and Schmidt 1971; sensitivities carried along: Gupta and Mehra 1974):
@@ -40,8 +40,8 @@ pub struct Node {
 pub struct Prior<'a> {
     /// Standard deviation of the first state, by coordinate.
     pub start: &'a DVector<f64>,
-    /// Standard deviation of the unknown force of an interval, by coordinate.
-    pub force: &'a DVector<f64>,
+    /// Standard deviation of the unknown force of every interval, by coordinate.
+    pub force: &'a [DVector<f64>],
     /// Factor of the noise of every interval, by channel.
     pub noise: &'a [DVector<f64>],
 }
@@ -72,6 +72,8 @@ pub struct Smoothed {
 struct Seen {
     /// Products over all channels.
     gram: DMatrix<f64>,
+    /// Standard deviation of its force.
+    force: DVector<f64>,
     n: Cholesky<f64, Dyn>,
     taken: DMatrix<f64>,
     t: DMatrix<f64>,
@@ -83,27 +85,27 @@ struct Seen {
 fn filter(nodes: &[Node], prior: Prior<'_>, mut look: impl FnMut(Seen)) -> Marginal {
     let width = nodes.first().map_or(1, |n| n.d.ncols());
     let n_x = prior.start.len();
-    let n_u = n_x + prior.force.len();
+    let n_u = nodes.first().map_or(n_x, |n| n_x + n.b.ncols());
     let mut l = DMatrix::from_diagonal(prior.start);
     let mut m = DMatrix::zeros(n_x, width);
     let mut total = DMatrix::zeros(width, width);
     let mut log_det = 0.0;
-    for (node, noise) in nodes.iter().zip(prior.noise) {
+    for ((node, noise), force) in nodes.iter().zip(prior.noise).zip(prior.force) {
         let gram = node.weighted(noise);
         let (zz, zy) = (gram.view((0, 0), (n_u, n_u)), gram.view((0, n_u), (n_u, width)));
         let (zs, sy) = (zz.columns(0, n_x), zy.rows(0, n_x));
-        let n = with_unit(rooted(&rooted(&zz.into_owned(), &l, prior.force).transpose(), &l, prior.force));
-        let hv = rooted(&(zy + zs * &m), &l, prior.force);
+        let n = with_unit(rooted(&rooted(&zz.into_owned(), &l, force).transpose(), &l, force));
+        let hv = rooted(&(zy + zs * &m), &l, force);
         let taken = n.solve(&hv);
         let crossed = sy.tr_mul(&m);
         let vv =
             gram.view((n_u, n_u), (width, width)) + &crossed + crossed.transpose() + m.tr_mul(&(zs.rows(0, n_x) * &m));
         total += vv - hv.tr_mul(&taken);
         log_det += 2.0 * n.l_dirty().diagonal().iter().map(|c| c.ln()).sum::<f64>();
-        let t = beside(&(&node.a * &l), &scaled(&node.b, prior.force));
+        let t = beside(&(&node.a * &l), &scaled(&node.b, force));
         let next_m = &node.a * &m + &node.d - &t * &taken;
         let next_l = root(&n, &t);
-        look(Seen { gram, n, taken, t, l, m });
+        look(Seen { gram, force: force.clone(), n, taken, t, l, m });
         (l, m) = (next_l, next_m);
     }
     Marginal { gram: total, log_det }
@@ -132,7 +134,8 @@ pub fn smooth(nodes: &[Node], prior: Prior<'_>, theta: &DVector<f64>) -> Smoothe
     let mut seen = Vec::with_capacity(nodes.len());
     filter(nodes, prior, |s| seen.push(s));
     let y = theta.push(1.0);
-    let (n_x, n_f) = (prior.start.len(), prior.force.len());
+    let n_x = prior.start.len();
+    let n_f = nodes.first().map_or(0, |n| n.b.ncols());
     let n_u = n_x + n_f;
     let mut gradient = DVector::zeros(n_x);
     let mut later = DMatrix::zeros(n_x, n_x);
@@ -141,22 +144,22 @@ pub fn smooth(nodes: &[Node], prior: Prior<'_>, theta: &DVector<f64>) -> Smoothe
         let zeta = -(&seen.taken * &y) - seen.n.solve(&seen.t.tr_mul(&gradient));
         let (xi, phi) = (zeta.rows(0, n_x), zeta.rows(n_x, n_f));
         let state = &seen.m * &y + &seen.l * xi;
-        let force = phi.component_mul(prior.force);
+        let force = phi.component_mul(&seen.force);
         let all = DVector::from_iterator(n_u + y.len(), state.iter().chain(&force).chain(&y).copied());
         gradient = seen.gram.rows(0, n_x) * &all + node.a.tr_mul(&gradient);
-        let known = with_unit(seen.information(prior.force) + seen.t.tr_mul(&(&later * &seen.t)));
+        let known = with_unit(seen.information() + seen.t.tr_mul(&(&later * &seen.t)));
         let covariance = known.inverse();
         let spread = covariance.diagonal().rows(n_x, n_f).into_owned();
-        let doubt = spread_of(&covariance, &seen.l, prior.force);
+        let doubt = spread_of(&covariance, &seen.l, &seen.force);
         let square = |(channel, gram): &(u16, DMatrix<f64>)| {
             let own = gram.view((0, 0), (n_u, n_u)).component_mul(&doubt).sum();
             (*channel, all.dot(&(gram * &all)) + own)
         };
         out.squares.push(node.grams.iter().map(square).collect());
-        out.variances.push(spread.component_mul(prior.force).component_mul(prior.force));
+        out.variances.push(spread.component_mul(&seen.force).component_mul(&seen.force));
         out.states.push(state);
         out.forces.push(force);
-        later = told_by(node, &seen.gram, prior, &later);
+        later = told_by(node, seen, &later);
     }
     out.states.reverse();
     out.forces.reverse();
@@ -167,10 +170,10 @@ pub fn smooth(nodes: &[Node], prior: Prior<'_>, theta: &DVector<f64>) -> Smoothe
 
 impl Seen {
     /// HᵀH.
-    fn information(&self, force: &DVector<f64>) -> DMatrix<f64> {
+    fn information(&self) -> DMatrix<f64> {
         let n_u = self.t.ncols();
         let zz = self.gram.view((0, 0), (n_u, n_u)).into_owned();
-        rooted(&rooted(&zz, &self.l, force).transpose(), &self.l, force)
+        rooted(&rooted(&zz, &self.l, &self.force).transpose(), &self.l, &self.force)
     }
 }
 
@@ -187,14 +190,14 @@ fn spread_of(covariance: &DMatrix<f64>, l: &DMatrix<f64>, force: &DVector<f64>) 
 }
 
 /// Information about the state at the begin of an interval by what it and all later ones measure, its force eliminated.
-fn told_by(node: &Node, gram: &DMatrix<f64>, prior: Prior<'_>, later: &DMatrix<f64>) -> DMatrix<f64> {
-    let (n_x, n_f) = (prior.start.len(), prior.force.len());
-    let b = scaled(&node.b, prior.force);
+fn told_by(node: &Node, Seen { gram, force, .. }: &Seen, later: &DMatrix<f64>) -> DMatrix<f64> {
+    let (n_x, n_f) = (node.a.ncols(), force.len());
+    let b = scaled(&node.b, force);
     let (la, lb) = (later * &node.a, later * &b);
     let ss = gram.view((0, 0), (n_x, n_x)) + node.a.tr_mul(&la);
-    let sf = scaled(&gram.view((0, n_x), (n_x, n_f)).into_owned(), prior.force) + node.a.tr_mul(&lb);
-    let own = scaled(&gram.view((n_x, n_x), (n_f, n_f)).into_owned(), prior.force).transpose();
-    let ff = with_unit(scaled(&own, prior.force) + b.tr_mul(&lb));
+    let sf = scaled(&gram.view((0, n_x), (n_x, n_f)).into_owned(), force) + node.a.tr_mul(&lb);
+    let own = scaled(&gram.view((n_x, n_x), (n_f, n_f)).into_owned(), force).transpose();
+    let ff = with_unit(scaled(&own, force) + b.tr_mul(&lb));
     let information = ss - &sf * ff.solve(&sf.transpose());
     0.5 * (&information + information.transpose())
 }
@@ -310,7 +313,7 @@ mod tests {
             let (mut j, mut y) = (DMatrix::zeros(0, unknowns), DMatrix::zeros(0, NUMBERS + 1));
             for (i, (rows, node)) in all.iter().enumerate() {
                 let mut force = DMatrix::zeros(FORCES, unknowns);
-                force[(0, STATES + i)] = prior.force[0];
+                force[(0, STATES + i)] = prior.force[i][0];
                 let s = rows.columns(0, STATES);
                 let mut own_j = s * &state + rows.columns(STATES, FORCES) * &force;
                 let mut own_y = rows.columns(STATES + FORCES, NUMBERS + 1) + s * &offset;
@@ -338,7 +341,8 @@ mod tests {
     }
 
     fn with_prior(check: impl Fn(Prior<'_>)) {
-        let [start, force] = [vec![2.0, 0.5], vec![0.7]].map(DVector::from_vec);
+        let start = DVector::from_vec(vec![2.0, 0.5]);
+        let force: Vec<_> = (0..INTERVALS).map(|i| DVector::from_element(1, 0.7 + 0.2 * i as f64)).collect();
         let noise: Vec<_> = (0..INTERVALS).map(|i| DVector::from_vec(vec![1.0, 1.5 + i as f64])).collect();
         check(Prior { start: &start, force: &force, noise: &noise });
     }
@@ -369,7 +373,7 @@ mod tests {
             let z = -(&covariance * j.tr_mul(&(&y * theta.push(1.0))));
             let found = smooth(&nodes, prior, &theta);
             for i in 0..INTERVALS {
-                let q = prior.force[0];
+                let q = prior.force[i][0];
                 assert!((found.forces[i][0] - q * z[STATES + i]).abs() < 1e-12);
                 assert!((found.variances[i][0] - q * q * covariance[(STATES + i, STATES + i)]).abs() < 1e-12);
             }
@@ -389,7 +393,7 @@ mod tests {
     #[test]
     fn without_forces_a_chain_is_one_free_run() {
         let nodes: Vec<Node> = problem().into_iter().map(|a| a.1).collect();
-        let [start, none] = [vec![2.0, 0.5], vec![0.0]].map(DVector::from_vec);
+        let (start, none) = (DVector::from_vec(vec![2.0, 0.5]), vec![DVector::zeros(FORCES); nodes.len()]);
         let noise = vec![DVector::from_element(2, 1.0); nodes.len()];
         let prior = Prior { start: &start, force: &none, noise: &noise };
         let found = smooth(&nodes, prior, &DVector::zeros(NUMBERS));

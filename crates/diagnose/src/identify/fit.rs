@@ -5,7 +5,7 @@
 //! numbers themselves. A step is taken if it lowers the marginal likelihood's −2 log as made linear there, and shortened where it does not.
 
 use super::forces::{Force, first_spread, forces};
-use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor, score};
+use super::marginal::{Chain, Estimate, Linear, Local, Spread, estimate, price_of_factor, score};
 use super::track::{Base, Bases, Column, Frame, Link, Told, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
@@ -250,7 +250,7 @@ impl<'a> Problem<'a> {
             let made = self.linearise(&mut now, &[], reuse || time > 0)?;
             let steps = if time == 0 { STEPS[0] } else { STEPS[1] };
             let chains = made.chains(&[]);
-            let found = estimate(&chains, None, &now.spread, steps);
+            let found = estimate(&chains, None, &now.spread.without_local_noise(), steps);
             let before = now.score;
             (now.spread, now.score, now.cost, now.count) = (found.spread.clone(), found.score, found.cost, made.count);
             now.score += now.set.prior_cost();
@@ -280,7 +280,9 @@ impl<'a> Problem<'a> {
             let variations = vary(self.plant, &now.set, &slots, &sizes)?;
             let made = self.linearise(&mut now, &variations, reach.reuse || iteration > 0)?;
             let ridge = ridge_of(&now.set, slots.len());
-            let here = estimate(&made.chains(&[]), None, &now.spread, if iteration == 0 { STEPS[0] } else { STEPS[1] });
+            // Which intervals are not followed is another question each time.
+            let before_it = now.spread.without_local_noise();
+            let here = estimate(&made.chains(&[]), None, &before_it, if iteration == 0 { STEPS[0] } else { STEPS[1] });
             let score = here.score + now.set.prior_cost();
             if let Some(last) = before.as_ref().filter(|b| score.is_nan() || score > b.score + CONVERGED) {
                 if halved >= HALVINGS {
@@ -333,14 +335,15 @@ impl<'a> Problem<'a> {
         let mut tracks = now.tracks.clone();
         let frame = self.frame(now);
         let channels = self.channels_of(&now.tracks);
+        let usual = now.spread.usual_force();
         let follow = |(k, track): (usize, &mut Track)| {
             let known = now.links.get(k).map(|links| links.as_slice());
             let of_interval = |(own, noise): (&Vec<u16>, DVector<f64>)| {
                 DVector::from_iterator(own.len(), own.iter().map(|c| noise[*c as usize]))
             };
-            let by_channel = now.spread.factors(k, channels[k].len());
+            let by_channel = vec![now.spread.noise.clone(); channels[k].len()];
             let factors: Vec<DVector<f64>> = channels[k].iter().zip(by_channel).map(of_interval).collect();
-            let told = Told { start: &now.first, force: &now.spread.force, factors: &factors };
+            let told = Told { start: &now.first, force: &usual, factors: &factors };
             frame.follow(track, told, known).map(Arc::new)
         };
         let links: Option<Vec<Arc<Vec<Link>>>> = tracks.par_iter_mut().enumerate().map(follow).collect();
@@ -455,8 +458,8 @@ impl<'a> Problem<'a> {
         let missed = |(run, channels): (usize, &Vec<Vec<u16>>)| -> f64 {
             let local = of.spread.local.get(run).map_or(&[][..], Vec::as_slice);
             let factor = |l: &DVector<f64>, c: usize| if l[c] > 1.0 { l[c] * of.spread.noise[c] } else { 1.0 };
-            let excess = |(own, l): (&Vec<u16>, &DVector<f64>)| -> f64 {
-                own.iter().map(|c| factor(l, *c as usize).powi(2) - 1.0).sum()
+            let excess = |(own, l): (&Vec<u16>, &Local)| -> f64 {
+                own.iter().map(|c| factor(&l.noise, *c as usize).powi(2) - 1.0).sum()
             };
             channels.iter().zip(local).map(excess).sum()
         };

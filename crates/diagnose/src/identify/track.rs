@@ -161,6 +161,24 @@ impl Frame<'_> {
         Some(Link { s, f, a, b })
     }
 
+    /// How rates answer to unknown forces at once, in a model that an interval may not be of: ∂v/∂f over a short while, a row a rate.
+    pub fn answer(&self, built: &Built, run: usize, interval: &Interval) -> Option<DMatrix<f64>> {
+        let to = interval.span.to.min(interval.span.from + self.stage.pace.step);
+        let part = Interval { span: Span { to, ..interval.span }, members: Vec::new(), ..interval.clone() };
+        let start = interval.start.fitted_to(built);
+        let end = self.glance(built, run, &part, &start)?.1;
+        let is_rate = |f: &Freedom| matches!(f, Freedom::Spin(..) | Freedom::Speed(..) | Freedom::Rate(..));
+        let rates: Vec<usize> = (0..self.freedoms.len()).filter(|k| is_rate(&self.freedoms[*k])).collect();
+        let mut answer = DMatrix::zeros(rates.len(), self.forces.len());
+        for (j, force) in self.forces.iter().enumerate() {
+            let mut pushed = part.clone();
+            pushed.force[j] += force.size;
+            let by = self.glance(built, run, &pushed, &start)?.1.difference(&end, self.freedoms);
+            rates.iter().enumerate().for_each(|(i, k)| answer[(i, j)] = by[*k] / force.size);
+        }
+        Some(answer)
+    }
+
     /// Columns of a number along a run, carried from interval to interval as far as it brings memory of its own: ∂r/∂θ and ∂end/∂θ of each.
     pub fn columns(&self, track: &Track, bases: &Bases, variation: &Variation) -> Vec<Column> {
         let brings = has_memory(&variation.built, self.built);

@@ -7,5 +7,6 @@
 
 pub mod pool;
 pub mod regression;
+pub mod scale;
 pub mod search;
 pub mod sets;

@@ -9,6 +9,7 @@
 //! taken: where a joint turns, dry friction is far from any line, and a few such intervals are outliers here, not a contradiction.
 
 use super::pool::Pool;
+use super::scale::Scale;
 use crate::fit::pseudo_inverse;
 use crate::identify::chain::Smoothed;
 use crate::identify::marginal::Linear;
@@ -18,6 +19,7 @@ use rayon::prelude::*;
 /// The missing force, and the forces of all columns.
 pub struct Regression<'a> {
     pool: &'a Pool,
+    scale: &'a Scale,
     /// Residuals of the runs, for prices.
     count: usize,
     /// Coordinate by coordinate over all intervals, by what a force there does to the readings: what is missing, its variances, and the columns' forces.
@@ -55,7 +57,7 @@ const TAKING_PART: usize = 30;
 
 impl<'a> Regression<'a> {
     /// Of some runs with their smoothed forces; the columns of the pool begin at `first`.
-    pub fn new(pool: &'a Pool, runs: &[Linear], first: usize, smoothed: &[Smoothed]) -> Self {
+    pub fn new((pool, scale): (&'a Pool, &'a Scale), runs: &[Linear], first: usize, smoothed: &[Smoothed]) -> Self {
         let columns = pool.columns();
         let of_run = |run: &Linear| {
             let of_interval = |i: usize| {
@@ -81,7 +83,7 @@ impl<'a> Regression<'a> {
         };
         let n_f = flat.first().map_or(0, |p| p.0.len());
         let count = runs.iter().flat_map(|r| &r.sides).map(|s| s.y.nrows()).sum();
-        Self { pool, count, coordinates: (0..n_f).map(of).collect() }
+        Self { pool, scale, count, coordinates: (0..n_f).map(of).collect() }
     }
 
     /// Sets of up to `most` effects, the best first.
@@ -130,7 +132,8 @@ impl<'a> Regression<'a> {
         let (theta, score) = self.solve(members);
         let starts = self.pool.starts(members, theta.as_slice())?;
         let costs = self.pool.price(members, self.count);
-        let change = score - none;
+        let columns: Vec<usize> = members.iter().flat_map(|m| self.pool.entries[*m].columns.clone()).collect();
+        let change = score - none + self.scale.price(&columns, theta.as_slice());
         change.is_finite().then_some(Spoken { members: starts, change, criterion: change + costs })
     }
 
@@ -236,7 +239,7 @@ mod tests {
         let start = DVector::from_element(1, 1.0);
         let runs = vec![Linear { run: 0, price: 30.0, links: Arc::new(links), sides, channels: Vec::new(), start }];
         let smoothed = Smoothed { forces, variances, ..Smoothed::default() };
-        Regression::new(&pool(), &runs, 0, &[smoothed]).grow(3)
+        Regression::new((&pool(), &Scale::default()), &runs, 0, &[smoothed]).grow(3)
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use super::pool::{Pool, price};
 use super::regression::{Regression, Spoken};
+use super::scale::Scale;
 use super::sets::{Ground, Grown, LinearSet};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
@@ -56,14 +57,16 @@ const SMALL: f64 = 0.01;
 const OWN: f64 = 1e-5;
 /// Share of what the unknown forces do below which nothing is left to add.
 pub const NEXT_TO_NOTHING: f64 = 1e-3;
-/// Sets that are fitted in full simulation in a round.
+/// Sets of the chain that are fitted in full simulation in a round, and how many of all where promises are broken.
 const FITTED: usize = 4;
+const ALL_FITTED: usize = 12;
 /// Places among them at which the most promising law is tried beside its own.
 const SIBLINGS: usize = 2;
 /// Sets of one size among them that the missing force speaks for; of the largest one.
 const SPOKEN: usize = 2;
-/// Share of the best promise below which a set is not fitted.
+/// Share of the best promise below which a set is not fitted, and of its own promise below which it was none.
 const PROMISING: f64 = 0.6;
+const REFUTED: f64 = 0.1;
 /// Iterations of a first fit, and to the end.
 const LOOK: Reach = Reach { iterations: 6, reuse: true };
 const GLANCE: Reach = Reach { iterations: 3, reuse: true };
@@ -100,57 +103,68 @@ pub fn search(
         let bare = bare(problem, &now)?;
         let hypotheses = open(hypotheses(&now), &now, problem, &bare);
         let cheapest = hypotheses.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
+        let bounds = Bounds { round, many, cheapest, all };
         // A nominal model that leaves nothing is still asked what these recordings can show.
-        let is_done = || problem.power(&now) < OWN * all || left_of(problem, &now, &bare).rise < cheapest;
-        if room == 0 || round > 0 && is_done() || problem.stage.work.is_spent(Until::Search) {
-            break;
-        }
-        if round > 0 && problem.power(&now) < SMALL * all {
-            if let Some(next) = corrected(problem, &now, numbers.take(), (many, all, cheapest))? {
+        let is_done = round > 0 && (problem.power(&now) < OWN * all || left_of(problem, &now, &bare).rise < cheapest);
+        if round > 0 {
+            if let Some(next) = corrected(problem, &now, (&mut numbers, is_done), bounds)? {
                 now = next;
                 continue;
             }
         }
-        let Looked { pool, grown, spoken } = look(problem, &mut now, hypotheses, room.min(AT_ONCE))?;
-        if round == 0 {
-            (found.shown, found.left) = (shown(&pool, &grown), grown.left);
+        if room == 0 || is_done || problem.stage.work.is_spent(Until::Search) {
+            break;
         }
-        let bounds = Bounds { round, many, cheapest, all };
-        let proposals = proposals(&pool, &now, &grown.sets, &spoken);
-        let best = fit_sets(problem, &now, (&pool, proposals), bounds, &mut found.tried)?;
+        let looked = look(problem, &mut now, hypotheses, room.min(AT_ONCE))?;
+        if round == 0 {
+            (found.shown, found.left) = (shown(&looked.pool, &looked.grown), looked.grown.left);
+        }
+        let best = fit_sets(problem, &now, &looked, bounds, &mut found.tried)?;
         // What takes little of what an accepted set leaves stands for something that is not in the library.
         let here = problem.power(&now);
         let takes_enough = |best: &Fitted| round == 0 || problem.power(best) <= (1.0 - further(here, all)) * here;
-        now = match best.filter(takes_enough) {
-            Some(best) => without_idle(problem, best, (many, all))?,
-            None => match corrected(problem, &now, numbers.take(), (many, all, cheapest))? {
-                Some(next) => next,
-                None => break,
-            },
-        };
+        let Some(best) = best.filter(takes_enough) else { break };
+        now = without_idle(problem, best, (many, all))?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
     found.best = now;
     Ok(found)
 }
 
-/// A fit with many nominal numbers free within what is usual, where that takes most of what is left: small errors of all of them together look like
-/// no single effect.
+/// A fit with many nominal numbers free within what is usual, where those of its findings that are no more than that may stand among them, or where they
+/// take most of what is left: small errors of all numbers together look like no single effect. Tried as long as there are `numbers`.
 fn corrected(
     problem: &Problem<'_>,
     now: &Fitted,
-    numbers: Option<EffectSet>,
-    (many, all, cheapest): (usize, f64, f64),
+    (numbers, is_done): (&mut Option<EffectSet>, bool),
+    Bounds { many, cheapest, all, .. }: Bounds,
 ) -> Result<Option<Fitted>, DiagnoseError> {
-    let Some(numbers) = numbers.filter(|n| !n.members.is_empty()) else { return Ok(None) };
-    let is_new = |(h, _): &&(Hypothesis, Vec<f64>)| now.set.members.iter().all(|(m, _)| m.title() != h.title());
-    let set = numbers.members.iter().filter(is_new).fold(now.set.clone(), |set, (h, x)| set.with(h, x));
+    let Some(free) = numbers.as_ref().filter(|n| !n.members.is_empty()) else { return Ok(None) };
+    let of = |h: &Hypothesis| free.members.iter().find(|(m, _)| m.title() == h.title()).map(|(m, _)| m);
+    let is_usual = |(h, x): &(Hypothesis, Vec<f64>)| of(h).is_some_and(|m| m.clamped(x) == *x);
+    let has_usual = now.set.findings().any(is_usual);
+    let (here, is_left) = (problem.power(now), !is_done);
+    if !has_usual && !(is_left && here < SMALL * all) {
+        return Ok(None);
+    }
+    let mut set = EffectSet::default();
+    for (h, x) in now.set.members.iter().filter(|m| !is_usual(m)) {
+        set = set.with(h, x);
+    }
+    for (h, x) in
+        free.members.iter().filter(|(h, _)| now.set.findings().all(|m| is_usual(m) || m.0.title() != h.title()))
+    {
+        let found = now.set.findings().find(|m| m.0.title() == h.title());
+        set = set.with(h, found.map_or(x, |m| &m.1));
+    }
+    *numbers = None;
     let Ok(next) = problem.fit(now, set, LOOK) else { return Ok(None) };
-    let (fall, power, here) = (criterion(now, many) - criterion(&next, many), problem.power(&next), problem.power(now));
+    let (fall, power) = (criterion(now, many) - criterion(&next, many), problem.power(&next));
     let said =
         format!("  nominal numbers within what is usual: criterion {:.1}, left {:.2} %", -fall, 100.0 * power / here);
     problem.stage.work.watch.step(&said);
-    if fall < cheapest || power > (1.0 - FURTHER[1]) * here {
+    let takes_most = fall >= cheapest && power <= (1.0 - FURTHER[1]) * here;
+    if !takes_most && !(has_usual && fall > 0.0) {
         return Ok(None);
     }
     Ok(Some(without_idle(problem, to_the_end(problem, next), (many, all))?))
@@ -186,7 +200,7 @@ struct Smaller {
 fn fit_sets(
     problem: &Problem<'_>,
     now: &Fitted,
-    (pool, proposals): (&Pool, Vec<Proposal>),
+    looked: &Looked,
     Bounds { round, many, cheapest, all }: Bounds,
     tried: &mut Vec<Tried>,
 ) -> Result<Option<Fitted>, DiagnoseError> {
@@ -194,25 +208,37 @@ fn fit_sets(
     let mut worthy: Vec<(usize, Fitted)> = Vec::new();
     let mut enough: Vec<Vec<String>> = Vec::new();
     let mut smaller: Vec<Smaller> = Vec::new();
-    for set in proposals {
-        if problem.stage.work.is_spent(Until::Search) {
+    let pool = &looked.pool;
+    let (mut done, mut refuted): (Vec<Vec<String>>, Vec<Vec<String>>) = Default::default();
+    while let Some(set) = next_of(proposals(looked, now, &refuted), pool, &done) {
+        if done.len() == ALL_FITTED || problem.stage.work.is_spent(Until::Search) {
             break;
         }
         let added: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
+        done.push(pool.titles(set.members.iter().map(|m| m.0)));
         // What adds to a set that leaves nothing adds nothing.
         if enough.iter().any(|known| known.iter().all(|t| added.contains(t))) {
             continue;
         }
         let members = set.members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
         let start = Fitted { spread: set.spread, ..now.clone() };
-        let Ok(fit) = problem.fit(&start, members, LOOK) else { continue };
+        let Ok(fit) = problem.fit(&start, members, LOOK) else {
+            refuted.push(added);
+            continue;
+        };
         let after = criterion(&fit, many);
         let (promised, brought) = (now.score - set.score, now.score - fit.score);
         let left = remainder(problem, &fit)?;
         let (names, gain) = (names(&fit.set), after - before);
-        let said = format!("  {names}: promised {promised:.1}, brought {brought:.1}, criterion {gain:.1}");
-        problem.stage.work.watch.step(&said);
         let power = problem.power(&fit);
+        let said = format!(
+            "  {names}: promised {promised:.1}, brought {brought:.1}, criterion {gain:.1}, {:.3} % of the missing force left",
+            100.0 * power / here
+        );
+        problem.stage.work.watch.step(&said);
+        if brought < REFUTED * promised {
+            refuted.push(added.clone());
+        }
         if left.rise < cheapest || power < NEXT_TO_NOTHING * here {
             enough.push(added.clone());
         }
@@ -231,6 +257,11 @@ fn fit_sets(
     Ok(best_of(problem, worthy, tried, (before, many)))
 }
 
+/// The first proposal that was not fitted yet.
+fn next_of(proposals: Vec<Proposal>, pool: &Pool, done: &[Vec<String>]) -> Option<Proposal> {
+    proposals.into_iter().find(|p| !done.contains(&pool.titles(p.members.iter().map(|m| m.0))))
+}
+
 /// The best of some fits, each with its number among those tried; those that are next to as good as it are taken to the end first, and told as they are there.
 fn best_of(
     problem: &Problem<'_>,
@@ -240,7 +271,7 @@ fn best_of(
 ) -> Option<Fitted> {
     let gain = |fit: &Fitted| before - criterion(fit, many);
     let most = worthy.iter().map(|(_, fit)| gain(fit)).reduce(f64::max)?;
-    let close = worthy.into_iter().filter(|(_, fit)| gain(fit) >= (1.0 - CLOSE) * most);
+    let close = worthy.into_iter().filter(|(_, fit)| gain(fit) >= most - CLOSE * most.abs());
     let to_the_end = |(index, fit): (usize, Fitted)| {
         let fit = to_the_end(problem, fit);
         let of: &mut Tried = &mut tried[index];
@@ -336,8 +367,10 @@ fn look(problem: &Problem<'_>, now: &mut Fitted, all: Vec<Hypothesis>, most: usi
     let chains = made.chains(&(0..slots.len()).collect::<Vec<_>>());
     let none = estimate(&chains, Some(&ridge), &now.spread, 2);
     let smoothed: Vec<_> = chains.iter().map(|chain| chain.smoothed(&none.spread, &none.theta)).collect();
-    let spoken = Regression::new(&pool, &made.runs, slots.len(), &smoothed).grow(most);
-    let ground = Ground { runs: &made.runs, ridge: &ridge, pool: &pool, active: slots.len(), count: made.count };
+    let scale = Scale::new(problem, now, &pool, &smoothed, &none.spread);
+    let spoken = Regression::new((&pool, &scale), &made.runs, slots.len(), &smoothed).grow(most);
+    let (active, count) = (slots.len(), made.count);
+    let ground = Ground { runs: &made.runs, ridge: &ridge, pool: &pool, scale: &scale, active, count };
     let grown = ground.grow(&none, most);
     watch.step("sets grown");
     Ok(Looked { pool, grown, spoken })
@@ -353,8 +386,16 @@ struct Proposal {
     spread: Spread,
 }
 
-/// The sets that are worth a fit: those that promise most by the criterion, of the chain and of the missing force, smaller ones first.
-fn proposals(pool: &Pool, now: &Fitted, sets: &[LinearSet], spoken: &[Spoken]) -> Vec<Proposal> {
+/// The sets that are worth a fit: those that promise most by the criterion, of the chain and of the missing force, smaller ones first. What adds to a
+/// set that brought next to nothing of what it promised promises nothing.
+fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Proposal> {
+    let pool = &looked.pool;
+    let is_open = |members: &[(usize, Vec<f64>)]| {
+        let own = pool.titles(members.iter().map(|m| m.0));
+        !refuted.iter().any(|known| known.iter().all(|t| own.contains(t)))
+    };
+    let sets: Vec<&LinearSet> = looked.grown.sets.iter().filter(|s| is_open(&s.members)).collect();
+    let spoken: Vec<&Spoken> = looked.spoken.iter().filter(|s| is_open(&s.members)).collect();
     let most = sets.iter().map(|s| now.score - s.score).fold(0.0, f64::max);
     let loudest = spoken.iter().map(|s| -s.change).fold(0.0, f64::max);
     let titles = |members: &[(usize, Vec<f64>)]| pool.titles(members.iter().map(|m| m.0));
@@ -370,9 +411,9 @@ fn proposals(pool: &Pool, now: &Fitted, sets: &[LinearSet], spoken: &[Spoken]) -
     let worth = sets.iter().filter(|s| now.score - s.score >= PROMISING * most).take(FITTED);
     let single = sets.iter().find(|s| s.members.len() == 1);
     // The same law at another place looks much like it.
-    let law = |s: &LinearSet| (s.members.len() == 1).then(|| pool.of(s.members[0].0).name);
+    let law = |s: &&LinearSet| (s.members.len() == 1).then(|| pool.of(s.members[0].0).name);
     let is_sibling =
-        |s: &&LinearSet| single.is_some_and(|o| law(s) == law(o) && titles(&s.members) != titles(&o.members));
+        |s: &&&LinearSet| single.is_some_and(|o| law(s) == law(o) && titles(&s.members) != titles(&o.members));
     let siblings = sets.iter().filter(is_sibling).take(SIBLINGS);
     let by_chain = worth.chain(single).chain(siblings).map(|s| Proposal {
         members: s.members.clone(),

@@ -1,6 +1,7 @@
 //! Sets of effects in the linear model: grown one by one, several at a time, each with the spread that is likeliest beside it.
 
 use super::pool::{Entry, Pool};
+use super::scale::Scale;
 use crate::fit::pseudo_inverse;
 use crate::identify::chain::Marginal;
 use crate::identify::marginal::{Chain, Estimate, Linear, Spread, estimate, products, solve, sum, wide_products};
@@ -49,6 +50,8 @@ pub struct Ground<'a> {
     pub ridge: &'a DMatrix<f64>,
     /// Hypotheses.
     pub pool: &'a Pool,
+    /// What changes of inertia cost.
+    pub scale: &'a Scale,
     /// Numbers that are fitted already.
     pub active: usize,
     /// Residuals.
@@ -146,18 +149,19 @@ impl Ground<'_> {
         let start = self.possible(&members, &found)?.pop()?.1;
         let Entry { hypothesis, point, columns } = &self.pool.entries[entry];
         let own = found.theta.len() - columns.len();
+        let of_scale = self.scale_of(&members, &found);
         let inverse = found.covariance.view((own, own), (columns.len(), columns.len())).into_owned();
         let information = pseudo_inverse(&inverse);
         let of = &self.pool.hypotheses[*hypothesis];
         let score = Score {
             hypothesis: *hypothesis,
             point: *point,
-            score: set.score - found.score,
+            score: set.score - found.score - of_scale,
             rank: columns.len(),
             start,
             shown: find_shown(of, &of.screens[*point], (&information, &inverse)),
         };
-        Some(Promise { entry, criterion: self.price(&members) + found.score, score })
+        Some(Promise { entry, criterion: self.price(&members) + found.score + of_scale, score })
     }
 
     /// Products of the columns of some entries, in their places among all.
@@ -208,15 +212,16 @@ impl Ground<'_> {
         let columns = self.columns(members);
         let found = estimate(&self.chains(&columns), Some(&self.ridge_for(columns.len())), spread, STEPS);
         let left = found.score - self.silent(members, &found.spread);
+        let score = found.score + self.scale_of(members, &found);
         let members = self.possible(members, &found)?;
-        let criterion = found.score + self.price(&members.iter().map(|m| m.0).collect::<Vec<_>>());
-        criterion.is_finite().then_some(LinearSet {
-            members,
-            criterion,
-            left,
-            score: found.score,
-            spread: found.spread,
-        })
+        let criterion = score + self.price(&members.iter().map(|m| m.0).collect::<Vec<_>>());
+        criterion.is_finite().then_some(LinearSet { members, criterion, left, score, spread: found.spread })
+    }
+
+    /// What the change of inertia costs that some members make at their amplitudes.
+    fn scale_of(&self, members: &[usize], found: &Estimate) -> f64 {
+        let own: Vec<usize> = members.iter().flat_map(|m| self.pool.entries[*m].columns.clone()).collect();
+        self.scale.price(&own, &found.theta.as_slice()[self.active..])
     }
 
     fn price(&self, members: &[usize]) -> f64 {
@@ -279,7 +284,8 @@ mod tests {
 
     fn best(truth: [f64; 2]) -> Vec<usize> {
         let (runs, pool, ridge) = (runs(truth), pool(), DMatrix::zeros(1, 1));
-        let ground = Ground { runs: &runs, ridge: &ridge, pool: &pool, active: 0, count: INTERVALS * SAMPLES };
+        let (scale, count) = (Scale::default(), INTERVALS * SAMPLES);
+        let ground = Ground { runs: &runs, ridge: &ridge, pool: &pool, scale: &scale, active: 0, count };
         let spread = Spread { force: DVector::from_element(1, 1e-2), ..Spread::steady(1, 1) };
         let none = estimate(&ground.chains(&[]), None, &spread, 10);
         let grown = ground.grow(&none, 3);
