@@ -290,9 +290,13 @@ fn predict_along(
     let whole = follow(few, plant, best.set.frozen(), &runs)?;
     let follows = whole.rms() < lost::NEAR;
     let windows = along::windows_of(&along::problem(few, plant, own, Role::Fit), best, window);
-    let found = along::as_fit(few, best, if follows { whole.segments } else { windows });
     let corrected = Fit { set: best.set.clone(), built: best.built.clone(), ..corrected };
     let judgement = judge((few, all), plant, ([&known, &known], &corrected), (window, follows))?;
+    // A run that is followed in windows and not as a whole says how far ahead the model tells, not how good it is.
+    let error = |run: usize, windowed: bool| judgement.rms(windowed, |r| r == run)[1];
+    let goes_astray = |run: usize| error(run, false) >= lost::NEAR && error(run, true) < lost::NEAR;
+    let follows = follows && !(0..all.tapes.len()).any(goes_astray);
+    let found = along::as_fit(few, best, if follows { whole.segments } else { windows });
     Ok(Predicted { found, follows, judgement })
 }
 

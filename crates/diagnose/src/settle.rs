@@ -146,17 +146,19 @@ impl Stage<'_> {
             if now < poor * segment.weight * self.count(segment) as f64 {
                 return segment.clone();
             }
-            let other = self.fit_growing(built, segment, effort);
+            let from = |start: &Start| self.fit_growing(built, segment, start, effort);
+            let (guessed, known) = (from(&segment.guess), from(&segment.start));
+            let other = if guessed.cost < known.cost { guessed } else { known };
             if other.cost < now { other.segment } else { segment.clone() }
         };
         segments.par_iter().map(of).collect()
     }
 
-    /// A start fitted to the first part of a segment, from what its samples say, then to longer and longer ones: what comes early is followed
-    /// before what comes of it is looked at.
-    fn fit_growing(&self, built: &Built, segment: &Segment, effort: Effort) -> Settled {
+    /// A start fitted to the first part of a segment, then to longer and longer ones: what comes early is followed before what comes of it is
+    /// looked at.
+    fn fit_growing(&self, built: &Built, segment: &Segment, start: &Start, effort: Effort) -> Settled {
         let Span { from, to } = segment.span;
-        let mut now = Segment { start: segment.guess.fitted_to(built), columns: None, ..segment.clone() };
+        let mut now = Segment { start: start.fitted_to(built), columns: None, ..segment.clone() };
         let freedoms = freedoms(built, &now.start).len();
         for share in GROWTH {
             now.span.to = from + share * (to - from);

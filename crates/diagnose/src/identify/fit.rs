@@ -6,7 +6,7 @@
 
 use super::forces::{Force, first_spread, forces};
 use super::marginal::{Chain, Estimate, Linear, Local, Spread, estimate, price_of_factor, score};
-use super::track::{Base, Bases, Column, Frame, Link, Told, Track, coordinates};
+use super::track::{Base, Bases, Column, Frame, Link, Side, Told, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
@@ -87,6 +87,9 @@ const NEARER: f64 = 0.5;
 const STEPS: [usize; 2] = [12, 6];
 /// Iterations of states and spread of a model without numbers.
 const SETTLING: usize = 3;
+/// Iterations until states follow each other, and what they may miss each other by, units of noise: a free run makes much of it.
+const JOININGS: usize = 3;
+const JOINED: f64 = 1e-2;
 /// Times that an interval is halved, samples of a channel that it takes, and how many times the usual mean square of a channel's residuals is
 /// missed where a force does not stay what it is.
 const HALVED: usize = 5;
@@ -258,6 +261,21 @@ impl<'a> Problem<'a> {
             if (before - now.score).abs() < CONVERGED {
                 break;
             }
+        }
+        Ok(now)
+    }
+
+    /// A fit whose states follow each other: what the end of an interval exceeds the next one's state by is lost in the noise of that. Numbers converge
+    /// before states do where a joint leaves its rest.
+    pub fn joined(&self, mut now: Fitted) -> Result<Fitted, DiagnoseError> {
+        for _ in 0..JOININGS {
+            let made = self.linearise(&mut now, &[], false)?;
+            if made.runs.iter().all(is_joined) {
+                break;
+            }
+            let chains = made.chains(&[]);
+            let found = estimate(&chains, None, &now.spread, STEPS[1]);
+            now.tracks = self.moved(&now, &chains, &found);
         }
         Ok(now)
     }
@@ -473,6 +491,12 @@ impl<'a> Problem<'a> {
         let of = |(track, chain): (&Track, &Chain)| frame.moved(track, &chain.smoothed(&found.spread, &found.theta));
         now.tracks.par_iter().zip(chains).map(of).collect()
     }
+}
+
+/// Whether what the ends of intervals exceed the next ones' states by is lost in the noise.
+fn is_joined(run: &Linear) -> bool {
+    let step = |(side, next): (&Side, &Link)| (&next.s * side.d.column(side.d.ncols() - 1)).amax() < JOINED;
+    run.sides.iter().zip(&run.links[1..]).all(step)
 }
 
 /// Rise of −2 log likelihood by residual with which derivatives have led astray.
