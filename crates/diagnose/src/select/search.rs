@@ -74,6 +74,8 @@ const END: Reach = Reach { iterations: 6, reuse: false };
 /// Most times that a fit is followed anew to its end, and fall of −2 log likelihood that is worth another time.
 const ENDS: usize = 5;
 const WORTH: f64 = 3.0;
+/// Nominal numbers off by no more than is usual from which on they are taken for small errors of all of them.
+const SEVERAL: usize = 3;
 /// Share of the most that a set gains by which first fits may be short of what they come to.
 const CLOSE: f64 = 0.02;
 /// Criterion by which a set is far from what it was.
@@ -142,7 +144,8 @@ fn corrected(
     let Some(free) = numbers.as_ref().filter(|n| !n.members.is_empty()) else { return Ok(None) };
     let of = |h: &Hypothesis| free.members.iter().find(|(m, _)| m.title() == h.title()).map(|(m, _)| m);
     let is_usual = |(h, x): &(Hypothesis, Vec<f64>)| of(h).is_some_and(|m| m.clamped(x) == *x);
-    let has_usual = now.set.findings().any(is_usual);
+    // One or two numbers that explain all by themselves are what was found; where it takes more of them all are off.
+    let has_usual = now.set.findings().filter(|m| is_usual(m)).count() >= SEVERAL;
     let (here, is_left) = (problem.power(now), !is_done);
     if !has_usual && !(is_left && here < SMALL * all) {
         return Ok(None);
