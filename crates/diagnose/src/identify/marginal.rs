@@ -299,8 +299,17 @@ impl Spread {
 
     /// The same without factors of the noise of single intervals.
     pub fn without_local_noise(&self) -> Self {
-        let one = |l: &Local| Local { noise: DVector::from_element(l.noise.len(), 1.0), force: l.force.clone() };
-        Self { local: self.local.iter().map(|own| own.iter().map(one).collect()).collect(), ..self.clone() }
+        self.with_local_noise(0.0)
+    }
+
+    /// The same with their square roots: what is not followed counts for less, and still counts.
+    pub fn softened(&self) -> Self {
+        self.with_local_noise(0.5)
+    }
+
+    fn with_local_noise(&self, power: f64) -> Self {
+        let of = |l: &Local| Local { noise: l.noise.map(|x| x.powf(power)), force: l.force.clone() };
+        Self { local: self.local.iter().map(|own| own.iter().map(of).collect()).collect(), ..self.clone() }
     }
 
     /// Root mean square of the unknown forces that are expected.

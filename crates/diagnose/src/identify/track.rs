@@ -96,7 +96,12 @@ impl Track {
     ) -> Result<Self, DiagnoseError> {
         let tape = &stage.tapes[run];
         let (from, to) = tape.span;
-        let instants: Vec<f64> = (0..=count).map(|i| from + (to - from) * i as f64 / count as f64).collect();
+        // Between samples: what a small delay makes of the first sample of an interval is not told from where that begins.
+        let most = tape.readings.iter().map(|r| r.times.len()).max().unwrap_or(2).max(2);
+        let aside = ASIDE * (to - from) / (most - 1) as f64;
+        let knot = |i: usize| from + (to - from) * i as f64 / count as f64;
+        let instants: Vec<f64> =
+            (0..=count).map(|i| if i == 0 || i == count { knot(i) } else { knot(i) - aside }).collect();
         let members = told_by(built, tape, &instants)?;
         let interval = |(w, members): (&[f64], Vec<u32>)| {
             let span = Span { from: w[0], to: w[1] };
@@ -369,6 +374,8 @@ fn told_by(built: &Built, tape: &Tape, instants: &[f64]) -> Result<Vec<Vec<u32>>
     Ok(members)
 }
 
+/// What a knot stands aside of even division, as a share of the closest sampling.
+const ASIDE: f64 = 0.3;
 /// How long a run may follow commands from before its begin, s.
 const UNHEARD: f64 = 0.02;
 /// Two instants closer than this are one, s.

@@ -413,25 +413,34 @@ fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Prop
     });
     let worth = sets.iter().filter(|s| now.score - s.score >= PROMISING * most).take(FITTED);
     let single = sets.iter().find(|s| s.members.len() == 1);
-    // The same law at another place looks much like it.
-    let law = |s: &&LinearSet| (s.members.len() == 1).then(|| pool.of(s.members[0].0).name);
-    let is_sibling =
-        |s: &&&LinearSet| single.is_some_and(|o| law(s) == law(o) && titles(&s.members) != titles(&o.members));
-    let siblings = sets.iter().filter(is_sibling).take(SIBLINGS);
-    let by_chain = worth.chain(single).chain(siblings).map(|s| Proposal {
-        members: s.members.clone(),
-        score: s.score,
-        spread: s.spread.clone(),
-    });
+    let by_chain =
+        worth.chain(single).map(|s| Proposal { members: s.members.clone(), score: s.score, spread: s.spread.clone() });
+    let siblings = single.map_or_else(Vec::new, |single| siblings(looked, now, single));
     let mut all: Vec<Proposal> = Vec::new();
     // What the missing force says of a law is nearer to it where no line follows that.
-    for proposal in by_force.chain(by_chain) {
+    for proposal in by_force.chain(by_chain).chain(siblings.into_iter().filter(|p| is_open(&p.members))) {
         if !all.iter().any(|known| titles(&known.members) == titles(&proposal.members)) {
             all.push(proposal);
         }
     }
     all.sort_by_key(|p| p.members.len());
     all
+}
+
+/// The law of a set of one at the other places that promise as much: there it looks much like it.
+fn siblings(looked: &Looked, now: &Fitted, single: &LinearSet) -> Vec<Proposal> {
+    let Looked { pool, grown, .. } = looked;
+    let own = pool.of(single.members[0].0);
+    let entry = |s: &Score| pool.entries.iter().position(|e| e.hypothesis == s.hypothesis && e.point == s.point);
+    let is_sibling = |s: &&Score| {
+        let of = &pool.hypotheses[s.hypothesis];
+        of.name == own.name && of.place != own.place && s.score >= PROMISING * (now.score - single.score)
+    };
+    let proposal = |s: &Score| {
+        let members = vec![(entry(s)?, s.start.clone())];
+        Some(Proposal { members, score: now.score - s.score, spread: single.spread.clone() })
+    };
+    grown.scores.iter().filter(is_sibling).filter_map(proposal).take(SIBLINGS).collect()
 }
 
 /// A fit that is followed anew as long as that betters it: forces that pushed the runs beside other numbers hold these where they were.

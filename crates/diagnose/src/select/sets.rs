@@ -66,7 +66,7 @@ const FURTHER: f64 = 0.3;
 /// Entries that take part in sets of two and more: the best by themselves.
 const TAKING_PART: usize = 30;
 /// Steps of a spread.
-const STEPS: usize = 4;
+const STEPS: usize = 6;
 
 impl Ground<'_> {
     /// Sets of up to `most` effects; `none`: the model without any.
@@ -122,11 +122,14 @@ impl Ground<'_> {
     /// A set with one more effect of some entries, the most promising ones; and these entries by what they promise.
     fn grown(&self, set: &LinearSet, among: &[usize]) -> (Vec<LinearSet>, Vec<Promise>) {
         let known: Vec<usize> = set.members.iter().map(|m| m.0).collect();
-        let k = self.products_of(&[&known[..], among].concat(), &set.spread);
+        // What one more effect is for may be the very intervals that are not followed without it.
+        let spread = set.spread.softened();
+        let k = self.products_of(&[&known[..], among].concat(), &spread);
+        let score = self.solved(&k, &known, &spread).score;
         let is_new =
             |e: &usize| known.iter().all(|k| self.pool.entries[*k].hypothesis != self.pool.entries[*e].hypothesis);
         let entries: Vec<usize> = among.iter().copied().filter(is_new).collect();
-        let promise = |entry: &usize| self.promise(&k, (&known, *entry), set);
+        let promise = |entry: &usize| self.promise(&k, (&known, *entry), (&spread, score));
         let mut promised: Vec<Promise> = entries.par_iter().filter_map(promise).collect();
         promised.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
         // Of the points of one hypothesis the two best.
@@ -142,10 +145,15 @@ impl Ground<'_> {
         (chosen.par_iter().filter_map(of).collect(), promised)
     }
 
-    /// What one more entry promises at the spread of a set; none where no such effect is possible.
-    fn promise(&self, k: &Marginal, (known, entry): (&[usize], usize), set: &LinearSet) -> Option<Promise> {
+    /// What one more entry promises at a spread, from the score of the set there; none where no such effect is possible.
+    fn promise(
+        &self,
+        k: &Marginal,
+        (known, entry): (&[usize], usize),
+        (spread, before): (&Spread, f64),
+    ) -> Option<Promise> {
         let members = [known, &[entry]].concat();
-        let found = self.solved(k, &members, &set.spread);
+        let found = self.solved(k, &members, spread);
         let start = self.possible(&members, &found)?.pop()?.1;
         let Entry { hypothesis, point, columns } = &self.pool.entries[entry];
         let own = found.theta.len() - columns.len();
@@ -156,7 +164,7 @@ impl Ground<'_> {
         let score = Score {
             hypothesis: *hypothesis,
             point: *point,
-            score: set.score - found.score - of_scale,
+            score: before - found.score - of_scale,
             rank: columns.len(),
             start,
             shown: find_shown(of, &of.screens[*point], (&information, &inverse)),
@@ -210,6 +218,7 @@ impl Ground<'_> {
 
     fn estimated(&self, members: &[usize], spread: &Spread) -> Option<LinearSet> {
         let columns = self.columns(members);
+        let spread = &spread.without_local_noise();
         let found = estimate(&self.chains(&columns), Some(&self.ridge_for(columns.len())), spread, STEPS);
         let left = found.score - self.silent(members, &found.spread);
         let score = found.score + self.scale_of(members, &found);
