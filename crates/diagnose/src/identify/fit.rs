@@ -49,7 +49,7 @@ pub struct Fitted {
     /// Derivatives by states and forces, as last taken.
     pub links: Vec<Arc<Vec<Link>>>,
     /// Columns of the numbers that only move within their tolerances, run by run: they change little, and are taken once.
-    pub steady: Vec<Arc<Vec<Vec<Column>>>>,
+    pub steady: Vec<Arc<Columns>>,
     /// Prior standard deviations of a first state.
     pub first: DVector<f64>,
     /// Spread of forces and noise.
@@ -65,6 +65,9 @@ pub struct Fitted {
     /// Whether the last step promised next to nothing.
     pub converged: bool,
 }
+
+/// Columns of a run, number by number and interval by interval.
+pub type Columns = Vec<Vec<Column>>;
 
 /// How far a fit goes.
 #[derive(Clone, Copy, Debug)]
@@ -446,14 +449,9 @@ impl<'a> Problem<'a> {
     }
 
     /// Columns of some numbers, run by run: those that are taken each time, and those that are taken once.
-    fn columns(
-        &self,
-        now: &Fitted,
-        bases: &[Bases],
-        variations: &[Variation],
-    ) -> (Vec<Vec<Vec<Column>>>, Vec<Arc<Vec<Vec<Column>>>>) {
+    fn columns(&self, now: &Fitted, bases: &[Bases], variations: &[Variation]) -> (Vec<Columns>, Vec<Arc<Columns>>) {
         let frame = self.frame(now);
-        let of = |is_tolerated: bool| -> Vec<Vec<Vec<Column>>> {
+        let of = |is_tolerated: bool| -> Vec<Columns> {
             let taken: Vec<&Variation> = variations.iter().filter(|v| v.is_tolerated == is_tolerated).collect();
             let columns = |(t, b): (&Track, &Bases)| taken.par_iter().map(|v| frame.columns(t, b, v)).collect();
             now.tracks.par_iter().zip(bases).map(columns).collect()

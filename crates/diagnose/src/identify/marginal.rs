@@ -137,7 +137,8 @@ impl Linear {
 
     /// Products of very many columns, over factors of the noise.
     fn summed(&self, columns: &[usize], factors: &[DVector<f64>]) -> Vec<Node> {
-        let node = |(((link, side), channels), factor): (((&Link, &Side), &Vec<u16>), &DVector<f64>)| {
+        let node = |i: usize| {
+            let (link, side, channels, factor) = (&self.links[i], &self.sides[i], &self.channels[i], &factors[i]);
             let kept: Vec<usize> = columns.iter().copied().chain([side.y.ncols() - 1]).collect();
             let (n_x, n_f) = (link.s.ncols(), link.f.ncols());
             let mut all = DMatrix::zeros(channels.len(), n_x + n_f + kept.len());
@@ -153,7 +154,7 @@ impl Linear {
             let gram = all.tr_mul(&all);
             Node { grams: vec![(0, gram)], a: link.a.clone(), b: link.b.clone(), d: side.d.select_columns(&kept) }
         };
-        self.links.par_iter().zip(&self.sides).zip(&self.channels).zip(factors).map(node).collect()
+        (0..self.links.len()).into_par_iter().map(node).collect()
     }
 }
 

@@ -108,11 +108,10 @@ pub fn search(
         let bounds = Bounds { round, many, cheapest, all };
         // A nominal model that leaves nothing is still asked what these recordings can show.
         let is_done = round > 0 && (problem.power(&now) < OWN * all || left_of(problem, &now, &bare).rise < cheapest);
-        if round > 0 {
-            if let Some(next) = corrected(problem, &now, (&mut numbers, is_done), bounds)? {
-                now = next;
-                continue;
-            }
+        let next = if round > 0 { corrected(problem, &now, (&mut numbers, is_done), bounds)? } else { None };
+        if let Some(next) = next {
+            now = next;
+            continue;
         }
         if room == 0 || is_done || problem.stage.work.is_spent(Until::Search) {
             break;
@@ -147,7 +146,7 @@ fn corrected(
     // One or two numbers that explain all by themselves are what was found; where it takes more of them all are off.
     let has_usual = now.set.findings().filter(|m| is_usual(m)).count() >= SEVERAL;
     let (here, is_left) = (problem.power(now), !is_done);
-    if !has_usual && !(is_left && here < SMALL * all) {
+    if !(has_usual || is_left && here < SMALL * all) {
         return Ok(None);
     }
     let mut set = EffectSet::default();
@@ -167,7 +166,7 @@ fn corrected(
         format!("  nominal numbers within what is usual: criterion {:.1}, left {:.2} %", -fall, 100.0 * power / here);
     problem.stage.work.watch.step(&said);
     let takes_most = fall >= cheapest && power <= (1.0 - FURTHER[1]) * here;
-    if !takes_most && !(has_usual && fall > 0.0) {
+    if !(takes_most || has_usual && fall > 0.0) {
         return Ok(None);
     }
     Ok(Some(without_idle(problem, to_the_end(problem, next), (many, all))?))
