@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Copies a rig's scenario with link masses and centres of mass that are a little wrong, and says so in its [tolerance].
 
-    wrong_nominals.py SCENARIO OUT SEED [MASS COM]        OUT/<name>.toml beside its robots; MASS 0.03 (share), COM 0.005 (m): one standard deviation
+    wrong_nominals.py SCENARIO OUT SEED [MASS COM [untold]]        OUT/<name>.toml beside its robots; MASS 0.03 (share), COM 0.005 (m): one standard
+                                                                deviation; untold: without [tolerance]
 
 The recording is the truth; what a diagnosis has to find in it stays what it was.
 """
@@ -26,6 +27,7 @@ def wrong(urdf, dice, mass, com):
 def main():
     scenario, out, seed = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), int(sys.argv[3])
     mass, com = map(float, sys.argv[4:6]) if len(sys.argv) > 4 else (0.03, 0.005)
+    is_told = "untold" not in sys.argv[6:]
     dice = random.Random(seed)
     out.mkdir(parents=True, exist_ok=True)
     text = scenario.read_text()
@@ -33,7 +35,8 @@ def main():
         source = (scenario.parent / urdf).resolve()
         (out / source.name).write_text(wrong(source.read_text(), dice, mass, com))
         text = text.replace(f'"{urdf}"', f'"{source.name}"')
-    text += f"\n[tolerance]\nmass = {mass}\ncom_m = {com}\n"
+    if is_told:
+        text += f"\n[tolerance]\nmass = {mass}\ncom_m = {com}\n"
     (out / scenario.name).write_text(text)
 
 

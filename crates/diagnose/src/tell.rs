@@ -146,7 +146,7 @@ fn said_of_tolerances(findings: &Findings, tolerance: &Tolerance) -> Option<Stri
     let most = members.iter().copied().max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
     let given = match *tolerance == Tolerance::default() {
         true => format!(
-            "what is usual, for the scenario gives no [tolerance] (masses {} %, centres {} mm)",
+            "what is usual, for the scenario gives no [tolerance] (masses and inertias {} %, centres {} mm)",
             100.0 * USUAL.mass,
             1000.0 * USUAL.com_m
         ),
