@@ -290,6 +290,9 @@ impl<'a> Problem<'a> {
         if !reach.reuse || now.set.titles() != from.set.titles() {
             now = self.followed(from, now)?;
         }
+        if !reach.reuse {
+            now.steady.clear();
+        }
         let slots = now.set.slots();
         if slots.is_empty() {
             return self.settle(now, SETTLING, reach.reuse);

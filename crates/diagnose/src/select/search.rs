@@ -128,7 +128,8 @@ pub fn search(
         now = without_idle(problem, best, (many, all))?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
-    found.best = now;
+    let known = hypotheses(&now);
+    found.best = plainer(problem, now, &known, many)?;
     Ok(found)
 }
 
@@ -480,6 +481,35 @@ fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64
         }
         let Some(less) = better else { break };
         now = to_the_end(problem, less);
+    }
+    Ok(now)
+}
+
+/// The same with laws as the plainer ones that they become, where these are as good by the criterion.
+fn plainer(problem: &Problem<'_>, mut now: Fitted, known: &[Hypothesis], many: usize) -> Result<Fitted, DiagnoseError> {
+    for member in 0..now.set.members.len() {
+        let (h, x) = now.set.members[member].clone();
+        let others = if h.is_tolerated() { Vec::new() } else { h.plainer(&x) };
+        for other in others {
+            let is_here = |p: &&Hypothesis| p.name == other.name && p.place == h.place;
+            let Some(plain) = known.iter().find(is_here) else { continue };
+            let plain = Hypothesis { held: [&plain.held[..], &other.held[..]].concat(), ..plain.clone() };
+            let mut set = EffectSet::default();
+            for (m, (own, x)) in now.set.members.iter().enumerate() {
+                set = if m == member { set.with(&plain, &other.coordinates) } else { set.with(own, x) };
+            }
+            let Ok(glance) = problem.fit(&now, set, GLANCE) else { continue };
+            if criterion(&glance, many) - criterion(&now, many) > FAR {
+                continue;
+            }
+            let tried = to_the_end(problem, glance);
+            let costs = criterion(&tried, many) - criterion(&now, many);
+            problem.stage.work.watch.step(&format!("  {} instead costs {costs:.1}", plain.title()));
+            if costs < 0.0 {
+                now = tried;
+                break;
+            }
+        }
     }
     Ok(now)
 }
