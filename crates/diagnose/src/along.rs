@@ -23,18 +23,7 @@ pub(crate) struct Course {
 }
 
 /// What nominal numbers may be off by where a scenario does not say it: weighed and drawn, not identified.
-pub(crate) const USUAL: Tolerance = Tolerance { mass: 0.01, com_m: 2e-3, inertia: 0.01, ..EXACT };
-const EXACT: Tolerance = Tolerance {
-    mass: 0.0,
-    com_m: 0.0,
-    inertia: 0.0,
-    gain: 0.0,
-    contact_stiffness: 0.0,
-    contact_damping: 0.0,
-    friction: 0.0,
-    mount_deg: 0.0,
-    clock_s: 0.0,
-};
+pub(crate) const USUAL: Tolerance = Tolerance { mass: 0.01, com_m: 2e-3, inertia: 0.01, ..Tolerance::EXACT };
 
 /// Iterations of a last fit, to all samples.
 const LAST: Reach = Reach { iterations: 4, reuse: false };
@@ -57,10 +46,9 @@ pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Cour
         nominal = problem.fit(&nominal, within, WITHIN)?;
     }
     let hypotheses = |now: &Fitted| hypotheses_of(&now.built, stage.tapes, own);
-    let is_exact = plant.scenario.tolerance == Tolerance::default();
-    let usual = |tolerance| catalogue::within(&Facts::new(&nominal.built, stage.tapes), tolerance);
-    let numbers = is_exact.then(|| usual(&USUAL));
-    let found = search(&problem, nominal.clone(), &hypotheses, numbers)?;
+    let usual = || catalogue::within(&Facts::new(&nominal.built, stage.tapes), &USUAL);
+    let numbers = plant.scenario.tolerance.is_exact().then(usual);
+    let found = search(&problem, nominal, &hypotheses, numbers)?;
     let after = remainder(&problem, &found.best)?;
     Ok(Course { found, left: [left, after] })
 }

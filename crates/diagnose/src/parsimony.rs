@@ -5,7 +5,7 @@
 
 use crate::error::DiagnoseError;
 use crate::fit::{Effort, fit};
-use crate::hypothesis::Hypothesis;
+use crate::hypothesis::{Alternative, Hypothesis};
 use crate::linear::Stage;
 use crate::plant::Plant;
 use crate::search::{LOOK, TIE, WHOLE, errors};
@@ -80,6 +80,18 @@ pub(crate) fn prune(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<S
     Ok(now)
 }
 
+/// Hypotheses and coordinates of what a member becomes where some of its numbers do nothing, as far as they are known.
+pub(crate) fn plainer((h, x): &(Hypothesis, Vec<f64>), known: &[Hypothesis]) -> Vec<(Hypothesis, Vec<f64>)> {
+    let others = if h.is_tolerated() { Vec::new() } else { h.plainer(x) };
+    let of = |other: Alternative| {
+        let is_here = |p: &&Hypothesis| p.name == other.name && (p.place == h.place || other.is_at_contact);
+        let plain = known.iter().find(is_here)?;
+        let held = [&plain.held[..], &other.held[..]].concat();
+        Some((Hypothesis { held, ..plain.clone() }, other.coordinates))
+    };
+    others.into_iter().filter_map(of).collect()
+}
+
 /// Puts a plainer law in the place of one that has grown into it, and a likelier one in that of its equal.
 pub(crate) fn simplify(
     stage: &Stage<'_>,
@@ -88,13 +100,8 @@ pub(crate) fn simplify(
     (all, brought): (&[Hypothesis], f64),
 ) -> Result<Standing, DiagnoseError> {
     for member in 0..now.judge().set.members.len() {
-        let (h, x) = now.judge().set.members[member].clone();
-        let plainer = if h.is_tolerated() { Vec::new() } else { h.plainer(&x) };
-        for other in plainer {
-            let is_here = |p: &&Hypothesis| p.name == other.name && (p.place == h.place || other.is_at_contact);
-            let Some(plain) = all.iter().find(is_here) else { continue };
-            let plain = Hypothesis { held: [&plain.held[..], &other.held[..]].concat(), ..plain.clone() };
-            let set = now.judge().set.without(member).with(&plain, &other.coordinates);
+        for (plain, x) in plainer(&now.judge().set.members[member], all) {
+            let set = now.judge().set.without(member).with(&plain, &x);
             let near = fit(stage, plant, set.clone(), now.judge().segments.clone(), GLANCE)?;
             if near.rms() > PLAINER * now.judge().rms() {
                 continue;

@@ -60,6 +60,11 @@ pub enum Freedom {
 }
 
 impl Freedom {
+    /// Whether it is a rate of motion.
+    pub fn is_rate(&self) -> bool {
+        matches!(self, Self::Spin(..) | Self::Speed(..) | Self::Rate(_))
+    }
+
     /// Perturbation for a first difference quotient: rad, m, rad/s, m/s, or the slot's own unit.
     pub fn first_step(&self) -> f64 {
         match self {

@@ -144,7 +144,7 @@ fn said_of_tolerances(findings: &Findings, tolerance: &Tolerance) -> Option<Stri
         (0..x.len()).filter(|k| h.tolerance[*k] > 0.0).map(of).fold(0.0, f64::max)
     };
     let most = members.iter().copied().max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
-    let given = match *tolerance == Tolerance::default() {
+    let given = match tolerance.is_exact() {
         true => format!(
             "what is usual, for the scenario gives no [tolerance] (masses and inertias {} %, centres {} mm)",
             100.0 * USUAL.mass,

@@ -362,11 +362,9 @@ impl<'a> Problem<'a> {
         let usual = now.spread.usual_force();
         let follow = |(k, track): (usize, &mut Track)| {
             let known = now.links.get(k).map(|links| links.as_slice());
-            let of_interval = |(own, noise): (&Vec<u16>, DVector<f64>)| {
-                DVector::from_iterator(own.len(), own.iter().map(|c| noise[*c as usize]))
-            };
-            let by_channel = vec![now.spread.noise.clone(); channels[k].len()];
-            let factors: Vec<DVector<f64>> = channels[k].iter().zip(by_channel).map(of_interval).collect();
+            let of_interval =
+                |own: &Vec<u16>| DVector::from_iterator(own.len(), own.iter().map(|c| now.spread.noise[*c as usize]));
+            let factors: Vec<DVector<f64>> = channels[k].iter().map(of_interval).collect();
             let told = Told { start: &now.first, force: &usual, factors: &factors };
             frame.follow(track, told, known).map(Arc::new)
         };

@@ -83,8 +83,7 @@ fn at<T: Clone + Default>(all: &mut Vec<T>, index: usize) -> &mut T {
 /// Forces that would by themselves move the rates as these move from interval to interval: beyond them nothing is unknown. `steps`: changes
 /// of the state over an interval; `b`: ∂end/∂f of a typical one.
 pub fn first_spread(freedoms: &[Freedom], steps: &[DVector<f64>], b: &DMatrix<f64>) -> DVector<f64> {
-    let is_rate = |f: &Freedom| matches!(f, Freedom::Spin(..) | Freedom::Speed(..) | Freedom::Rate(..));
-    let rates: Vec<usize> = (0..freedoms.len()).filter(|k| is_rate(&freedoms[*k])).collect();
+    let rates: Vec<usize> = (0..freedoms.len()).filter(|k| freedoms[*k].is_rate()).collect();
     let of = |j: usize| {
         let column = DVector::from_iterator(rates.len(), rates.iter().map(|k| b[(*k, j)]));
         let along = |step: &DVector<f64>| rates.iter().zip(column.iter()).map(|(k, b)| step[*k] * b).sum::<f64>();

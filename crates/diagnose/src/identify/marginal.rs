@@ -116,23 +116,20 @@ impl Linear {
                 }
                 (channel, all.tr_mul(&all))
             };
-            let mut own: Vec<u16> = channels.clone();
-            own.sort_unstable();
-            own.dedup();
             Node {
-                grams: own.into_iter().map(of_channel).collect(),
+                grams: counts(channels).into_iter().map(|(channel, _)| of_channel(channel)).collect(),
                 a: link.a.clone(),
                 b: link.b.clone(),
                 d: side.d.select_columns(&kept),
             }
         };
         let nodes: Vec<Node> = self.links.par_iter().zip(&self.sides).zip(&self.channels).map(node).collect();
-        let count = |(node, channels): (&Node, &Vec<u16>)| {
-            let of = |c: u16| (c, channels.iter().filter(|own| **own == c).count() as f64);
-            node.grams.iter().map(|g| of(g.0)).collect()
-        };
-        let samples = nodes.iter().zip(&self.channels).map(count).collect();
-        Chain { run: self.run, price: self.price, nodes, start: self.start.clone(), samples }
+        Chain { run: self.run, price: self.price, nodes, start: self.start.clone(), samples: self.samples() }
+    }
+
+    /// Residuals by channel, interval by interval.
+    fn samples(&self) -> Vec<Vec<(u16, f64)>> {
+        self.channels.iter().map(|own| counts(own)).collect()
     }
 
     /// Products of very many columns, over factors of the noise.
@@ -158,6 +155,21 @@ impl Linear {
     }
 }
 
+/// Channels of some residuals in order, and how many each has.
+fn counts(channels: &[u16]) -> Vec<(u16, f64)> {
+    let mut own = channels.to_vec();
+    own.sort_unstable();
+    own.chunk_by(|a, b| a == b).map(|alike| (alike[0], alike.len() as f64)).collect()
+}
+
+/// What factors of the noise add to −2 log likelihood.
+fn log_noise(samples: &[Vec<(u16, f64)>], factors: &[DVector<f64>]) -> f64 {
+    let of = |(own, noise): (&Vec<(u16, f64)>, &DVector<f64>)| -> f64 {
+        own.iter().map(|(c, n)| 2.0 * n * noise[*c as usize].ln()).sum()
+    };
+    samples.iter().zip(factors).map(of).sum()
+}
+
 impl Chain {
     /// States and forces at some numbers.
     pub fn smoothed(&self, spread: &Spread, theta: &DVector<f64>) -> Smoothed {
@@ -169,7 +181,7 @@ impl Chain {
     fn worst(&self, smoothed: &Smoothed, spread: &Spread) -> f64 {
         let mut worst = 0.0;
         for (i, (squares, samples)) in smoothed.squares.iter().zip(&self.samples).enumerate() {
-            let local = spread.local.get(self.run).and_then(|own| own.get(i));
+            let local = spread.local_of(self.run, i);
             for ((channel, square), (_, n)) in squares.iter().zip(samples) {
                 let channel = *channel as usize;
                 if local.is_none_or(|l| l.noise[channel] <= 1.0) {
@@ -184,10 +196,7 @@ impl Chain {
     fn products(&self, spread: &Spread) -> Marginal {
         let [noise, force] = spread.by_interval(self.run, self.nodes.len());
         let found = eliminate(&self.nodes, Prior { start: &self.start, force: &force, noise: &noise });
-        let log = |(own, noise): (&Vec<(u16, f64)>, &DVector<f64>)| -> f64 {
-            own.iter().map(|(c, n)| 2.0 * n * noise[*c as usize].ln()).sum()
-        };
-        let log_noise: f64 = self.samples.iter().zip(&noise).map(log).sum();
+        let log_noise = log_noise(&self.samples, &noise);
         Marginal { log_det: found.log_det + log_noise + spread.price_of(self.run, self.price), ..found }
     }
 }
@@ -204,10 +213,7 @@ pub fn wide_products(runs: &[Linear], columns: &[usize], spread: &Spread) -> Mar
         let ones = vec![DVector::from_element(spread.noise.len(), 1.0); factors.len()];
         let nodes = run.summed(columns, &factors);
         let found = eliminate(&nodes, Prior { start: &run.start, force: &force, noise: &ones });
-        let log = |(own, noise): (&Vec<u16>, &DVector<f64>)| -> f64 {
-            own.iter().map(|c| 2.0 * noise[*c as usize].ln()).sum()
-        };
-        let log_noise: f64 = run.channels.iter().zip(&factors).map(log).sum();
+        let log_noise = log_noise(&run.samples(), &factors);
         Marginal { log_det: found.log_det + log_noise + spread.price_of(run.run, run.price), ..found }
     };
     sum(&runs.par_iter().map(of).collect::<Vec<_>>())
@@ -290,6 +296,11 @@ impl Spread {
         Self { force: DVector::zeros(forces), noise: DVector::from_element(channels, 1.0), local: Vec::new() }
     }
 
+    /// What is different in an interval of a run, where that is known.
+    pub fn local_of(&self, run: usize, interval: usize) -> Option<&Local> {
+        self.local.get(run)?.get(interval)
+    }
+
     /// Factors of the noise of every interval of a run, by channel, and standard deviations of its forces.
     pub fn by_interval(&self, run: usize, intervals: usize) -> [Vec<DVector<f64>>; 2] {
         let local = self.local.get(run).filter(|own| own.len() == intervals);
@@ -354,7 +365,7 @@ fn growth(runs: &[Chain], now: &Estimate) -> Spread {
         sums.intervals = s.forces.len() as f64;
         let mut local = Vec::with_capacity(s.squares.len());
         for (i, (squares, samples)) in s.squares.iter().zip(&run.samples).enumerate() {
-            let before = now.spread.local.get(run.run).and_then(|own| own.get(i));
+            let before = now.spread.local_of(run.run, i);
             let ones = DVector::from_element;
             let mut own = Local { noise: ones(n_c, 1.0), force: ones(n_f, 1.0) };
             for ((channel, square), (_, n)) in squares.iter().zip(samples) {

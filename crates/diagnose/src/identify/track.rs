@@ -86,6 +86,20 @@ pub fn coordinates(built: &Built, start: &Start) -> Vec<Freedom> {
     freedoms(built, start).into_iter().filter(|f| !matches!(f, Freedom::Bristle(..))).collect()
 }
 
+impl Interval {
+    /// Its begin up to an instant, of which nothing is read.
+    fn until(&self, to: f64) -> Self {
+        Self { span: Span { to, ..self.span }, members: Vec::new(), ..self.clone() }
+    }
+
+    /// The same with one unknown force larger by so much.
+    fn pushed(&self, force: usize, by: f64) -> Self {
+        let mut pushed = self.clone();
+        pushed.force[force] += by;
+        pushed
+    }
+}
+
 impl Track {
     /// Cuts a run into so many intervals of one length, each with the state that its samples suggest.
     pub fn cut(
@@ -155,9 +169,7 @@ impl Frame<'_> {
         };
         let by_force = |j: usize| {
             let step = self.forces[j].size;
-            let mut pushed = interval.clone();
-            pushed.force[j] += step;
-            column(self.glance(self.built, run, &pushed, &pushed.start), step)
+            column(self.glance(self.built, run, &interval.pushed(j, step), &interval.start), step)
         };
         let states: Vec<_> = self.freedoms.par_iter().map(by_state).collect();
         let forces: Vec<_> = (0..self.forces.len()).into_par_iter().map(by_force).collect();
@@ -168,17 +180,13 @@ impl Frame<'_> {
 
     /// How rates answer to unknown forces at once, in a model that an interval may not be of: ∂v/∂f over a short while, a row a rate.
     pub fn answer(&self, built: &Built, run: usize, interval: &Interval) -> Option<DMatrix<f64>> {
-        let to = interval.span.to.min(interval.span.from + self.stage.pace.step);
-        let part = Interval { span: Span { to, ..interval.span }, members: Vec::new(), ..interval.clone() };
+        let part = interval.until(interval.span.to.min(interval.span.from + self.stage.pace.step));
         let start = interval.start.fitted_to(built);
         let end = self.glance(built, run, &part, &start)?.1;
-        let is_rate = |f: &Freedom| matches!(f, Freedom::Spin(..) | Freedom::Speed(..) | Freedom::Rate(..));
-        let rates: Vec<usize> = (0..self.freedoms.len()).filter(|k| is_rate(&self.freedoms[*k])).collect();
+        let rates: Vec<usize> = (0..self.freedoms.len()).filter(|k| self.freedoms[*k].is_rate()).collect();
         let mut answer = DMatrix::zeros(rates.len(), self.forces.len());
         for (j, force) in self.forces.iter().enumerate() {
-            let mut pushed = part.clone();
-            pushed.force[j] += force.size;
-            let by = self.glance(built, run, &pushed, &start)?.1.difference(&end, self.freedoms);
+            let by = self.glance(built, run, &part.pushed(j, force.size), &start)?.1.difference(&end, self.freedoms);
             rates.iter().enumerate().for_each(|(i, k)| answer[(i, j)] = by[*k] / force.size);
         }
         Some(answer)
@@ -320,7 +328,7 @@ impl Frame<'_> {
         if (interval.span.from - time).abs() <= SAME {
             return Some(interval.start.clone());
         }
-        let part = Interval { span: Span { to: time, ..interval.span }, members: Vec::new(), ..interval.clone() };
+        let part = interval.until(time);
         self.shoot(self.built, track.run, &part, &part.start).map(|base| base.1)
     }
 

@@ -61,6 +61,11 @@ impl Pool {
         self.entries.last().map_or(0, |e| e.columns.end)
     }
 
+    /// Columns of some entries, one entry's after the other.
+    pub fn columns_of(&self, entries: &[usize]) -> Vec<usize> {
+        entries.iter().flat_map(|e| self.entries[*e].columns.clone()).collect()
+    }
+
     /// The hypothesis of an entry.
     pub fn of(&self, entry: usize) -> &Hypothesis {
         &self.hypotheses[self.entries[entry].hypothesis]

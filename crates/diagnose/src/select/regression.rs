@@ -132,14 +132,13 @@ impl<'a> Regression<'a> {
         let (theta, score) = self.solve(members);
         let starts = self.pool.starts(members, theta.as_slice())?;
         let costs = self.pool.price(members, self.count);
-        let columns: Vec<usize> = members.iter().flat_map(|m| self.pool.entries[*m].columns.clone()).collect();
-        let change = score - none + self.scale.price(&columns, theta.as_slice());
+        let change = score - none + self.scale.price(&self.pool.columns_of(members), theta.as_slice());
         change.is_finite().then_some(Spoken { members: starts, change, criterion: change + costs })
     }
 
     /// The numbers of some entries' columns, and −2 log likelihood.
     fn solve(&self, members: &[usize]) -> (DVector<f64>, f64) {
-        let columns: Vec<usize> = members.iter().flat_map(|m| self.pool.entries[*m].columns.clone()).collect();
+        let columns = self.pool.columns_of(members);
         let w: Vec<DMatrix<f64>> = self.coordinates.iter().map(|c| c.columns.select_columns(&columns)).collect();
         let mut theta = DVector::zeros(columns.len());
         // From afar: what the largest forces say counts at first.

@@ -10,6 +10,7 @@ use crate::fit::{EffectSet, first_sizes, vary};
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach, ridge_of};
 use crate::identify::marginal::{Chain, Spread, estimate, score};
+use crate::parsimony::plainer;
 use crate::screen::Score;
 use crate::standing::told;
 use crate::work::Until;
@@ -129,7 +130,7 @@ pub fn search(
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
     let known = hypotheses(&now);
-    found.best = plainer(problem, now, &known, many)?;
+    found.best = simplified(problem, now, &known, many)?;
     Ok(found)
 }
 
@@ -150,15 +151,14 @@ fn corrected(
     if !(has_usual || is_left && here < SMALL * all) {
         return Ok(None);
     }
-    let mut set = EffectSet::default();
-    for (h, x) in now.set.members.iter().filter(|m| !is_usual(m)) {
-        set = set.with(h, x);
-    }
-    for (h, x) in
-        free.members.iter().filter(|(h, _)| now.set.findings().all(|m| is_usual(m) || m.0.title() != h.title()))
-    {
-        let found = now.set.findings().find(|m| m.0.title() == h.title());
-        set = set.with(h, found.map_or(x, |m| &m.1));
+    let usual = (0..now.set.members.len()).rev().filter(|m| is_usual(&now.set.members[*m]));
+    let mut set = usual.fold(now.set.clone(), |set, m| set.without(m));
+    for (h, x) in &free.members {
+        match now.set.members.iter().find(|m| m.0.title() == h.title()) {
+            // What is off by more than is usual stays a finding.
+            Some(found) if !is_usual(found) => (),
+            found => set = set.with(h, found.map_or(x, |m| &m.1)),
+        }
     }
     *numbers = None;
     let Ok(next) = problem.fit(now, set, LOOK) else { return Ok(None) };
@@ -311,7 +311,7 @@ fn left_of(problem: &Problem<'_>, fit: &Fitted, bare: &[Chain]) -> Remainder {
     let at = |spread: &Spread| score(bare, spread);
     let stated = (1.0 + problem.stage.doubt).sqrt();
     let noise = fit.spread.noise.map(|x| x.min(stated));
-    let silent = Spread { force: &fit.spread.force * 0.0, noise, local: Vec::new() };
+    let silent = Spread { noise, ..Spread::steady(problem.forces.len(), problem.channels.len()) };
     let (mean, variance) = (0.5 * problem.variances() as f64, 1.25 * problem.variances() as f64);
     // A gamma distribution of that mean and variance: the cube root is nearly normal.
     let shape = mean * mean / variance;
@@ -486,19 +486,16 @@ fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64
 }
 
 /// The same with laws as the plainer ones that they become, where these are as good by the criterion.
-fn plainer(problem: &Problem<'_>, mut now: Fitted, known: &[Hypothesis], many: usize) -> Result<Fitted, DiagnoseError> {
-    for member in 0..now.set.members.len() {
-        let (h, x) = now.set.members[member].clone();
-        let others = if h.is_tolerated() { Vec::new() } else { h.plainer(&x) };
-        for other in others {
-            let is_here = |p: &&Hypothesis| p.name == other.name && p.place == h.place;
-            let Some(plain) = known.iter().find(is_here) else { continue };
-            let plain = Hypothesis { held: [&plain.held[..], &other.held[..]].concat(), ..plain.clone() };
-            let mut set = EffectSet::default();
-            for (m, (own, x)) in now.set.members.iter().enumerate() {
-                set = if m == member { set.with(&plain, &other.coordinates) } else { set.with(own, x) };
-            }
-            let Ok(glance) = problem.fit(&now, set, GLANCE) else { continue };
+fn simplified(
+    problem: &Problem<'_>,
+    mut now: Fitted,
+    known: &[Hypothesis],
+    many: usize,
+) -> Result<Fitted, DiagnoseError> {
+    for member in now.set.members.clone() {
+        for (plain, x) in plainer(&member, known) {
+            let Some(at) = now.set.members.iter().position(|m| m.0.title() == member.0.title()) else { continue };
+            let Ok(glance) = problem.fit(&now, now.set.without(at).with(&plain, &x), GLANCE) else { continue };
             if criterion(&glance, many) - criterion(&now, many) > FAR {
                 continue;
             }

@@ -190,7 +190,7 @@ impl Ground<'_> {
     }
 
     fn columns(&self, members: &[usize]) -> Vec<usize> {
-        let own = members.iter().flat_map(|m| self.pool.entries[*m].columns.clone()).map(|c| self.active + c);
+        let own = self.pool.columns_of(members).into_iter().map(|c| self.active + c);
         (0..self.active).chain(own).collect()
     }
 
@@ -229,8 +229,7 @@ impl Ground<'_> {
 
     /// What the change of inertia costs that some members make at their amplitudes.
     fn scale_of(&self, members: &[usize], found: &Estimate) -> f64 {
-        let own: Vec<usize> = members.iter().flat_map(|m| self.pool.entries[*m].columns.clone()).collect();
-        self.scale.price(&own, &found.theta.as_slice()[self.active..])
+        self.scale.price(&self.pool.columns_of(members), &found.theta.as_slice()[self.active..])
     }
 
     fn price(&self, members: &[usize]) -> f64 {

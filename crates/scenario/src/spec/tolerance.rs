@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Standard deviations of nominal numbers, for a diagnosis: within three of them it may correct a number without calling that a finding. What is not
 /// named is exact.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Tolerance {
     /// Of the mass of every link and base, as a share of it.
@@ -47,9 +47,28 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
+    /// Every nominal number is exact.
+    pub const EXACT: Self = Self {
+        mass: 0.0,
+        com_m: 0.0,
+        inertia: 0.0,
+        gain: 0.0,
+        contact_stiffness: 0.0,
+        contact_damping: 0.0,
+        friction: 0.0,
+        mount_deg: 0.0,
+        clock_s: 0.0,
+    };
+
     /// Whether every nominal number is exact.
     pub fn is_exact(&self) -> bool {
-        *self == Self::default()
+        *self == Self::EXACT
+    }
+}
+
+impl Default for Tolerance {
+    fn default() -> Self {
+        Self::EXACT
     }
 }
 
