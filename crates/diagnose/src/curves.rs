@@ -71,12 +71,14 @@ pub(crate) fn unit_of_channel(model: &Model, quantity: Quantity, channel: &str) 
     else {
         return unit;
     };
+    if slides(model, v) { sliding } else { turning }
+}
+
+/// Whether a coordinate is that of a sliding joint.
+pub(crate) fn slides(model: &Model, coordinate: usize) -> bool {
     let mut joints =
         model.vehicles.iter().flat_map(|vehicle| vehicle.tree.joints.iter().map(|j| (vehicle.v0 + j.v_index, j)));
-    match joints.find(|(at, joint)| *at == v && !joint.is_mimic) {
-        Some((_, joint)) if joint.kind == JointKind::Prismatic => sliding,
-        _ => turning,
-    }
+    joints.any(|(at, joint)| at == coordinate && !joint.is_mimic && joint.kind == JointKind::Prismatic)
 }
 
 /// What was measured; orientations have no curve.

@@ -27,6 +27,7 @@ pub mod guess;
 pub mod hypothesis;
 pub mod identify;
 pub mod judge;
+mod limits;
 pub mod linear;
 pub mod locate;
 mod lost;

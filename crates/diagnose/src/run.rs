@@ -19,6 +19,7 @@ use crate::fit::{EffectSet, Effort, Fit, UNDAMPED, fit};
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::Fitted;
 use crate::judge::{Judgement, judge};
+use crate::limits;
 use crate::linear::{Segment, Stage, Steps};
 use crate::locate::{Located, locate, locate_in, places};
 use crate::lost;
@@ -152,9 +153,16 @@ fn prepare<'w>(
     refuse_foreign(&inspection)?;
     let own = scenario.integrator;
     let mut plant = Plant::new(scenario);
-    let (tapes, built) = load(&mut plant, set)?;
+    let (mut tapes, mut built) = load(&mut plant, set)?;
+    let mut said: Vec<String> = limits::said_of_efforts(set).into_iter().collect();
+    if let Some((scenario, words)) = limits::raised(&plant, &built, &tapes) {
+        said.push(words);
+        plant = Plant::new(scenario);
+        (tapes, built) = load(&mut plant, set)?;
+    }
     let mut begun = begin(&plant, (&built, tapes), set, parts, &mut clock)?;
-    begun.said.extend(said_of_scheme(own, &plant));
+    said.extend(said_of_scheme(own, &plant));
+    begun.said.extend(said);
     Ok(Prepared { plant, inspection, begun, clock })
 }
 

@@ -1,6 +1,7 @@
 //! A recorded run, made ready for replay: commands, readings, and the order in which they come.
 
 use crate::error::DiagnoseError;
+use crate::limits;
 use crate::noise;
 use crate::plant::{Built, Plant};
 use crate::reading::{Reading, Value};
@@ -77,7 +78,12 @@ impl Tape {
         let mut commands = Vec::new();
         let mut groups: BTreeMap<String, Vec<(usize, &Series)>> = BTreeMap::new();
         for series in run.series.iter().filter(|s| !s.times.is_empty() && !s.channel.starts_with("drive.")) {
-            if let Some(found) = plant.actuator(model, &series.channel) {
+            // A measured effort drives its joint where no command was recorded.
+            let beside = limits::command_beside(&series.channel);
+            if beside.as_deref().is_some_and(|command| run.series(command).is_some()) {
+                continue;
+            }
+            if let Some(found) = plant.actuator(model, beside.as_deref().unwrap_or(&series.channel)) {
                 let (actuator, unit) = found.map_err(refuse)?;
                 let efforts = series.values.iter().map(|v| v * unit).collect();
                 commands.push(CommandTape { actuator, times: series.times.clone(), efforts });
@@ -89,10 +95,6 @@ impl Tape {
         let mut readings = Vec::new();
         for (prefix, group) in &groups {
             let quantity = plant.quantity(model, prefix).map_err(refuse)?;
-            if let Quantity::JointEffort(_) = quantity {
-                let fault = "measured efforts are not predicted in this version; drop the column".to_owned();
-                return Err(refuse(MeasureError { channel: prefix.clone(), fault }));
-            }
             readings.extend(readings_of(set, prefix, quantity, group));
         }
         let index = set.runs.iter().position(|r| r.file == run.file && r.note == run.note).unwrap_or(0);

@@ -128,6 +128,17 @@ impl Scenario {
         finish(root, source, errors)
     }
 
+    /// Sets the speed at which an actuator no longer pushes its joints on, rad/s or m/s, and gives the override that does the same.
+    ///
+    /// Other kinds of actuators have no such key: none.
+    pub fn set_speed_limit(&mut self, actuator: usize, (limit, slides): (f64, bool)) -> Option<String> {
+        self.actuators.get_mut(actuator)?.kind.joint_speed_limit_mut(slides)?.replace(limit);
+        let unit = if slides { "m" } else { "rad" };
+        let text = format!("actuator[{actuator}].speed_limit_{unit}_per_s={limit:?}");
+        self.source.overrides.push(text.clone());
+        Some(text)
+    }
+
     /// Where a value was written: the nearest place in the file, or the override that set it.
     ///
     /// `path` is as for `--set`. Of a path that the file leaves out, the innermost table that is there is given.

@@ -43,17 +43,18 @@ pub(super) fn resolve(scenario: &Scenario, vehicles: &mut [VehicleSpec], faults:
         }
     }
     let is_latch = |m: &spec::Mechanism| matches!(m.kind, spec::MechanismKind::Latch(_));
-    let all = scenario.mechanisms.iter().enumerate();
-    let latches: Vec<_> = all.filter(|(_, m)| is_latch(m)).map(|(k, m)| (k, m.name.as_str())).collect();
+    let mechanisms = scenario.mechanisms.iter().enumerate();
+    let latches: Vec<_> = mechanisms.filter(|(_, m)| is_latch(m)).map(|(k, m)| (k, m.name.as_str())).collect();
     let mut table = ActuatorTable::default();
-    let mut armatures = Vec::new();
+    let mut all = Vec::new();
     for (i, actuator) in scenario.actuators.iter().enumerate() {
         let site = Site { i, vehicles, rotor: rotors[i], latches: &latches };
         add(&mut table, actuator, &site, faults);
-        armatures.extend(reflected(actuator, &site, faults));
+        all.push(brought(actuator, &site, faults));
     }
-    for (v, j, inertia) in armatures {
-        vehicles[v].tree.joints[j].armature += inertia;
+    for Brought { armatures, speed_limits } in all {
+        armatures.iter().for_each(|(v, j, inertia)| vehicles[*v].tree.joints[*j].armature += inertia);
+        speed_limits.iter().for_each(|(v, j, limit)| vehicles[*v].tree.joints[*j].velocity_limit = *limit);
     }
     table
 }
@@ -66,22 +67,39 @@ fn check_start_speed(i: usize, speed: f64, limit: f64, faults: &mut Faults<'_>) 
     }
 }
 
-/// Vehicle, joint and inertia of the rotors that an actuator's drives reflect to their joints.
-fn reflected(actuator: &spec::Actuator, site: &Site<'_>, faults: &mut Faults<'_>) -> Vec<(usize, usize, f64)> {
-    let Some((inertia, is_linear)) = actuator.kind.reflected_inertia() else { return Vec::new() };
+/// What an actuator brings to its joints: vehicle, joint, and the value.
+struct Brought {
+    armatures: Vec<(usize, usize, f64)>,
+    speed_limits: Vec<(usize, usize, f64)>,
+}
+
+/// Rotors that an actuator's drives reflect to their joints, and the speeds at which they stop pushing.
+fn brought(actuator: &spec::Actuator, site: &Site<'_>, faults: &mut Faults<'_>) -> Brought {
+    let kind = &actuator.kind;
+    let inertia = "give reflected_mass_kg for a joint that slides, reflected_inertia_kg_m2 for one that turns";
+    let speed = "give speed_limit_m_per_s for a joint that slides, speed_limit_rad_per_s for one that turns";
+    let armatures = at_joints(kind, (kind.reflected_inertia(), inertia), site, faults);
+    let speed_limits = at_joints(kind, (kind.joint_speed_limit(), speed), site, faults);
+    Brought { armatures, speed_limits }
+}
+
+/// A value and whether it is one of sliding joints, at all joints of an actuator.
+fn at_joints(
+    kind: &spec::ActuatorKind,
+    (value, advice): (Option<(f64, bool)>, &str),
+    site: &Site<'_>,
+    faults: &mut Faults<'_>,
+) -> Vec<(usize, usize, f64)> {
+    let Some((value, is_linear)) = value else { return Vec::new() };
     let mut found = Vec::new();
-    for pattern in actuator.kind.joint_patterns() {
+    for pattern in kind.joint_patterns() {
         // A pattern that names no joint has been told already.
         for (v, joint) in joints_of(site, pattern, "", &mut Faults::silent(faults)) {
             if is_linear != (joint.kind == JointKind::Prismatic) {
-                let key = format!("actuator[{}]", site.i);
-                faults.add(
-                    &key,
-                    "give reflected_mass_kg for a joint that slides, reflected_inertia_kg_m2 for one that turns",
-                );
+                faults.add(&format!("actuator[{}]", site.i), advice);
             }
             let index = site.vehicles[v].tree.joints.iter().position(|j| j.name == joint.name);
-            found.extend(index.map(|j| (v, j, inertia)));
+            found.extend(index.map(|j| (v, j, value)));
         }
     }
     found

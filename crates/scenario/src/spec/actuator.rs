@@ -21,8 +21,9 @@ pub struct Actuator {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ActuatorKind {
-    /// The command is the joint's torque, N·m, or force, N; at the URDF's velocity limit it no longer pushes.
-    #[schemars(extend("x-at-most-one" = [["limit_n_m", "limit_n"], ["reflected_inertia_kg_m2", "reflected_mass_kg"]]))]
+    /// The command is the joint's torque, N·m, or force, N; at its speed limit it no longer pushes.
+    #[schemars(extend("x-at-most-one" = [["limit_n_m", "limit_n"], ["speed_limit_rad_per_s", "speed_limit_m_per_s"],
+        ["reflected_inertia_kg_m2", "reflected_mass_kg"]]))]
     JointTorque {
         /// The joint, as `vehicle/joint`.
         #[schemars(extend("x-refers" = "vehicle/part"))]
@@ -35,6 +36,14 @@ pub enum ActuatorKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(extend("exclusiveMinimum" = 0.0))]
         limit_n: Option<f64>,
+        /// Speed at which it stops pushing, in that direction, rad/s; the URDF's velocity limit where absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        speed_limit_rad_per_s: Option<f64>,
+        /// The same of a prismatic joint, m/s.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        speed_limit_m_per_s: Option<f64>,
         /// Rotor inertia as the joint feels it, kg·m²; gyroscopic terms neglected, no part of the vehicle's momentum.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.0))]
@@ -44,8 +53,8 @@ pub enum ActuatorKind {
         #[schemars(range(min = 0.0))]
         reflected_mass_kg: Option<f64>,
     },
-    /// A position and rate loop: τ = k (q_cmd − q) + d (q̇_cmd − q̇), within the limit; at the URDF's velocity limit it
-    /// no longer pushes.
+    /// A position and rate loop: τ = k (q_cmd − q) + d (q̇_cmd − q̇), within the limit; at its speed limit it no longer
+    /// pushes.
     JointDrive(JointDrive),
     /// The command is the thrust, N, between zero and `max_force_n`.
     Thruster {
@@ -96,7 +105,7 @@ pub enum ActuatorKind {
 #[schemars(extend(
     "x-exactly-one" = [["joint", "joints"], ["stiffness_n_m_per_rad", "stiffness_n_per_m"]],
     "x-at-most-one" = [["damping_n_m_s_per_rad", "damping_n_s_per_m"], ["limit_n_m", "limit_n"],
-        ["reflected_inertia_kg_m2", "reflected_mass_kg"]],
+        ["speed_limit_rad_per_s", "speed_limit_m_per_s"], ["reflected_inertia_kg_m2", "reflected_mass_kg"]],
 ))]
 pub struct JointDrive {
     /// The joint, as `vehicle/joint`.
@@ -131,6 +140,14 @@ pub struct JointDrive {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub limit_n: Option<f64>,
+    /// Speed at which it stops pushing, in that direction, rad/s; the URDF's velocity limit where absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub speed_limit_rad_per_s: Option<f64>,
+    /// The same of prismatic joints, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub speed_limit_m_per_s: Option<f64>,
     /// Rotor inertia as each joint feels it, kg·m²; gyroscopic terms neglected, no part of the vehicle's momentum.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
@@ -182,6 +199,30 @@ impl ActuatorKind {
             Self::Thruster { .. } | Self::ReactionWheel { .. } | Self::LatchRelease { .. } => (None, None),
         };
         own.map(String::as_str).into_iter().chain(many.into_iter().flat_map(JointDrive::joint_patterns))
+    }
+
+    /// Speed at which it stops pushing where the file gives one, rad/s or m/s, and whether it is that of a sliding joint.
+    pub fn joint_speed_limit(&self) -> Option<(f64, bool)> {
+        let (turning, sliding) = match self {
+            Self::JointTorque { speed_limit_rad_per_s, speed_limit_m_per_s, .. } => {
+                (*speed_limit_rad_per_s, *speed_limit_m_per_s)
+            }
+            Self::JointDrive(drive) => (drive.speed_limit_rad_per_s, drive.speed_limit_m_per_s),
+            Self::Thruster { .. } | Self::ReactionWheel { .. } | Self::LatchRelease { .. } => (None, None),
+        };
+        turning.map(|l| (l, false)).or(sliding.map(|l| (l, true)))
+    }
+
+    /// The key of the same for turning or sliding joints; none of an actuator that drives no joint.
+    pub(crate) fn joint_speed_limit_mut(&mut self, slides: bool) -> Option<&mut Option<f64>> {
+        let [turning, sliding] = match self {
+            Self::JointTorque { speed_limit_rad_per_s, speed_limit_m_per_s, .. } => {
+                [speed_limit_rad_per_s, speed_limit_m_per_s]
+            }
+            Self::JointDrive(drive) => [&mut drive.speed_limit_rad_per_s, &mut drive.speed_limit_m_per_s],
+            Self::Thruster { .. } | Self::ReactionWheel { .. } | Self::LatchRelease { .. } => return None,
+        };
+        Some(if slides { sliding } else { turning })
     }
 
     /// Rotor inertia (kg·m²) or mass (kg) as its joints feel it, and whether it is a mass.

@@ -1,0 +1,76 @@
+//! Limits of a scenario that its recording passes, and efforts that were measured instead of commanded.
+#![allow(clippy::unwrap_used)]
+
+mod planted;
+
+use diagnose::diagnosis::Verdict;
+use diagnose::synthetic::as_recorded;
+use diagnose::{Diagnosis, synthesise};
+use planted::{effect, number, root, swings};
+use record::{RecordingSet, Series};
+use scenario::Scenario;
+
+const FRICTION: &str = "joint-viscous-friction";
+
+fn swing(set: &[&str]) -> Scenario {
+    let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
+    scenario::load(&root().join("crates/diagnose/tests/rigs/swing.toml"), &set).unwrap()
+}
+
+/// The rig with a friction that its scenario lacks.
+fn recording() -> RecordingSet {
+    let mut rig = swing(&[]);
+    rig.effects.push(effect(FRICTION, "joint:hinge", &[("b", number(0.3))]));
+    synthesise(rig, &swings(), &as_recorded, 3).unwrap()
+}
+
+fn diagnosed(scenario: Scenario, set: &RecordingSet) -> Diagnosis {
+    diagnose::diagnose(scenario, set, &()).unwrap().0
+}
+
+fn found(diagnosis: &Diagnosis) -> Vec<&str> {
+    diagnosis.effects.iter().map(|e| e.name.as_str()).collect()
+}
+
+#[test]
+fn a_speed_limit_that_the_rig_passes_is_raised_said_and_written() {
+    let set = recording();
+    let slow = "actuator.hinge.speed_limit_rad_per_s=0.2";
+    let diagnosis = diagnosed(swing(&[slow]), &set);
+    assert_eq!((diagnosis.verdict, found(&diagnosis)), (Verdict::Explained, vec![FRICTION]));
+    assert!(
+        diagnosis.remarks.iter().any(|r| r.contains("actuator[0].speed_limit_rad_per_s=")),
+        "{:?}",
+        diagnosis.remarks
+    );
+    let own = diagnosed(swing(&[]), &set);
+    assert!(!own.remarks.iter().any(|r| r.contains("speed_limit")), "{:?}", own.remarks);
+    let [raised, free] = [&diagnosis, &own].map(|d| d.effects[0].params["b"].numbers().unwrap()[0]);
+    assert!((raised - free).abs() < 1e-6, "{raised} {free}");
+}
+
+/// The same with every series of a channel renamed, or added by another name.
+fn with_efforts(set: &RecordingSet, name: &str, keeps: bool, gain: f64) -> RecordingSet {
+    let mut set = set.clone();
+    for run in &mut set.runs {
+        let at = run.series.iter().position(|s| s.channel.ends_with(".effort_command")).unwrap();
+        let command = run.series[at].clone();
+        let values = command.values.iter().map(|v| gain * v).collect();
+        let measured = Series::new(name, command.times.clone(), values);
+        if keeps { run.series.push(measured) } else { run.series[at] = measured }
+    }
+    set
+}
+
+#[test]
+fn a_measured_effort_drives_a_joint_whose_command_was_not_recorded() {
+    let set = recording();
+    let commanded = diagnosed(swing(&[]), &set);
+    let measured = diagnosed(swing(&[]), &with_efforts(&set, "joint.hinge.effort", false, 1.0));
+    // Beside a command it is not looked at, whatever it says.
+    let both = diagnosed(swing(&[]), &with_efforts(&set, "joint.hinge.effort", true, 7.0));
+    for diagnosis in [&measured, &both] {
+        assert_eq!(diagnosis.effects, commanded.effects);
+        assert!(diagnosis.remarks.iter().any(|r| r.contains("joint.hinge.effort")), "{:?}", diagnosis.remarks);
+    }
+}
