@@ -6,10 +6,10 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum DiagnoseError {
     /// The scenario cannot be built with a set of effects.
-    #[error("{0}")]
+    #[error(transparent)]
     Scenario(#[from] scenario::ScenarioErrors),
     /// A recording cannot be read.
-    #[error("{0}")]
+    #[error(transparent)]
     Recording(#[from] record::RecordError),
     /// A recorded channel has no counterpart in the scenario.
     #[error("channel \"{channel}\" of {file}: {reason}")]

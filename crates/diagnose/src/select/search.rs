@@ -56,6 +56,8 @@ const FURTHER: [f64; 2] = [0.2, 0.75];
 const SMALL: f64 = 0.01;
 /// Share of what the unknown forces do (their power) that may be what steps and difference quotients make of the laws that were found.
 const OWN: f64 = 1e-5;
+/// Factor by which the noise of a channel may grow where it stands for nothing.
+const LOUDER: f64 = 1.01;
 /// Share of what the unknown forces do below which nothing is left to add.
 pub const NEXT_TO_NOTHING: f64 = 1e-3;
 /// Sets of the chain that are fitted in full simulation in a round, and how many of all where promises are broken.
@@ -468,7 +470,7 @@ fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64
         for m in (0..now.set.members.len()).rev().filter(|m| !now.set.members[*m].0.is_tolerated()) {
             let Ok(glance) = problem.fit(&now, now.set.without(m), GLANCE) else { continue };
             // What is worse by far after two steps does not come back.
-            let leaves_own = |fit: &Fitted| problem.power(fit) < OWN * all;
+            let leaves_own = |fit: &Fitted| problem.power(fit) < OWN * all && is_as_quiet(fit, &now);
             if criterion(&glance, many) - criterion(&now, many) > FAR && !leaves_own(&glance) {
                 continue;
             }
@@ -483,6 +485,11 @@ fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64
         now = to_the_end(problem, less);
     }
     Ok(now)
+}
+
+/// Whether a fit takes no more for noise than another one: what a sensor's fault leaves in all samples looks like more of it, not like a force.
+fn is_as_quiet(fit: &Fitted, than: &Fitted) -> bool {
+    fit.spread.noise.iter().zip(&than.spread.noise).all(|(a, b)| *a <= LOUDER * b)
 }
 
 /// The same with laws as the plainer ones that they become, where these are as good by the criterion.

@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""Effects that the practice sets do not have: planted by softdock in recordings like theirs, then diagnosed.
+
+    planted.py SOFTDOCK RECORDINGS OUT [CASE-PREFIX…]        CASE-PREFIX: tumbler, arm-bench/joint-, …
+
+What is planted is simulated by softdock itself, with four times finer steps, so that this shows what the search can tell apart and how sure
+its numbers are, not whether its laws are those of hardware. Prints a table: what was planted, what was told, whether it is the same, and by
+how many of its standard errors each number is off.
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import time
+import tomllib
+
+SCENARIOS = pathlib.Path(__file__).resolve().parents[2] / "scenarios" / "rigs"
+LIKE = {"tumbler": "tumbler-05", "arm-bench": "arm-bench-05", "dock-impact": "dock-impact-05", "air-table": "air-table-02", "stick-slip": "stick-slip-03"}
+TARGET, CHASER, GYRO, STAR = "body:target", "body:chaser", "sensor:body.target.angular_velocity", "sensor:body.target.orientation"
+DROGUE, PLATE = "contact:probe/drogue", "contact:slider/plate"
+
+CASES = {
+    "tumbler/gravity": [f'name = "gravity-gradient", place = "{TARGET}", mean_motion = 0.001114'],
+    "tumbler/flexible": [f'name = "flexible-appendage", place = "{TARGET}", frequency = 0.05, damping = 0.01, coupling = [1.5, 0.5, -2.0]'],
+    "tumbler/dissipation": [f'name = "internal-dissipation", place = "{TARGET}", i_damper = 4.0, c = 0.4'],
+    "tumbler/pump": [f'name = "periodic-disturbance", place = "{TARGET}", amplitude = [0.004, 0.0, 0.003], frequency = 0.43, phase = 0.7'],
+    "tumbler/world-torque": [f'name = "constant-torque", place = "{TARGET}", vector = [0.0006, -0.0003, 0.0004], frame = "world"'],
+    "tumbler/bias": [f'name = "sensor-bias", place = "{GYRO}", bias = [0.0006, -0.0004, 0.0002]'],
+    "tumbler/scale": [f'name = "sensor-scale", place = "{GYRO}", scale = 1.006'],
+    "tumbler/late": [f'name = "sensor-delay", place = "{STAR}", delay = 0.09'],
+    "tumbler/turned": [f'name = "sensor-misalignment", place = "{GYRO}", angle = [0.006, -0.004, 0.009]'],
+    "tumbler/slosh-small": [f'name = "slosh", place = "{TARGET}", mass = 6.0, frequency = 0.2, damping = 0.03, position = [0.1, -0.3, 0.5]'],
+    "tumbler/damping+late": [f'name = "angular-damping", place = "{TARGET}", c = 0.01', f'name = "sensor-delay", place = "{STAR}", delay = 0.12'],
+    "tumbler/flexible+torque": [f'name = "flexible-appendage", place = "{TARGET}", frequency = 0.22, damping = 0.02, coupling = [2.0, 0.0, 1.5]',
+                                f'name = "constant-torque", place = "{TARGET}", vector = [0.0004, 0.0002, -0.0005]'],
+    "tumbler/inertia+bias": [f'name = "body-inertia", place = "{TARGET}", inertia = [95.0, 163.0, 214.0, 0.8, 0.0, -1.2]',
+                             f'name = "sensor-bias", place = "{GYRO}", bias = [0.0004, 0.0005, -0.0003]'],
+    "arm-bench/joint-asymmetry": ['name = "joint-friction-asymmetry", place = "joint:joint_2", c_plus = 0.9, c_minus = 0.5'],
+    "arm-bench/joint-backlash": ['name = "joint-backlash", place = "joint:joint_4", gap = 0.0015, k = 6000.0, d = 8.0'],
+    "arm-bench/joint-ripple": ['name = "joint-torque-ripple", place = "joint:joint_3", amplitude = 0.4, order = 17, phase = 1.1'],
+    "arm-bench/joint-cable": ['name = "joint-cable-stiffness", place = "joint:joint_5", k = 1.4, q_rest = 0.2'],
+    "arm-bench/joint-armature": ['name = "joint-armature", place = "joint:joint_6", i_rotor = 0.012'],
+    "arm-bench/joint-gain": ['name = "actuator-gain", place = "joint:joint_1", gain = 0.97'],
+    "arm-bench/joint-lag": ['name = "actuator-lag", place = "joint:joint_3", time_constant = 0.008'],
+    "arm-bench/joint-pump": ['name = "periodic-disturbance", place = "joint:joint_2", amplitude = 0.5, frequency = 6.3, phase = 0.4'],
+    "arm-bench/joint-coulomb-7": ['name = "joint-coulomb-friction", place = "joint:joint_7", c = 0.25'],
+    "arm-bench/joint-elastic-6": ['name = "joint-elasticity", place = "joint:joint_6", k = 900.0, d = 0.8'],
+    "arm-bench/body-mass": ['name = "body-mass", place = "body:link_5", mass = 2.05'],
+    "arm-bench/bias": ['name = "sensor-bias", place = "sensor:joint.joint_3.position", bias = 0.004'],
+    "arm-bench/tacho": ['name = "sensor-scale", place = "sensor:joint.joint_2.velocity", scale = 1.03'],
+    "arm-bench/dry+payload": ['name = "joint-coulomb-friction", place = "joint:joint_4", c = 0.6', 'name = "payload", place = "link:link_7", mass = 0.25, com = [0.0, 0.02, 0.1]'],
+    "arm-bench/viscous+ripple": ['name = "joint-viscous-friction", place = "joint:joint_2", b = 1.2', 'name = "joint-torque-ripple", place = "joint:joint_5", amplitude = 0.2, order = 30, phase = 0.0'],
+    "arm-bench/dry+viscous+cable": ['name = "joint-coulomb-friction", place = "joint:joint_3", c = 0.5', 'name = "joint-viscous-friction", place = "joint:joint_3", b = 0.5',
+                                    'name = "joint-cable-stiffness", place = "joint:joint_6", k = 0.8, q_rest = -0.3'],
+    "dock-impact/offset": [f'name = "contact-geometry-offset", place = "{DROGUE}", offset = [0.0, 0.003, -0.002]'],
+    "dock-impact/stribeck": [f'name = "friction-stribeck", place = "{DROGUE}", mu_s = 0.17, mu_d = 0.11, v_s = 0.02'],
+    "dock-impact/bristle": [f'name = "friction-bristle-stiffness", place = "{DROGUE}", k_b = 240000.0, c_b = 400.0'],
+    "dock-impact/inertia": [f'name = "body-inertia", place = "{CHASER}", inertia = [92.0, 126.0, 128.0, 0.0, 2.0, 0.0]'],
+    "dock-impact/mass": [f'name = "body-mass", place = "{CHASER}", mass = 462.0'],
+    "dock-impact/force-late": ['name = "sensor-delay", place = "sensor:sensor.probe.force", delay = 0.002'],
+    "dock-impact/force-scale": ['name = "sensor-scale", place = "sensor:sensor.probe.force", scale = 1.04'],
+    "dock-impact/friction+mass": [f'name = "friction-coefficient", place = "{DROGUE}", mu = 0.16', f'name = "body-mass", place = "{CHASER}", mass = 440.0'],
+    "air-table/quadratic": [f'name = "quadratic-drag", place = "{CHASER}", c = 0.6'],
+    "air-table/turned-nozzle": ['name = "actuator-misalignment", place = "actuator:thruster_2", angle_y = 0.0, angle_z = 0.06'],
+    "air-table/late": ['name = "actuator-delay", place = "actuator:*", delay = 0.02'],
+    "air-table/hose": [f'name = "tether-stiffness", place = "{CHASER}", k = 0.05, d = 0.02, anchor = [-0.5, 0.4, 0.25]'],
+    "air-table/mass": [f'name = "body-mass", place = "{CHASER}", mass = 12.5'],
+    "air-table/tilt+drag": ['name = "tilt", place = "world", vector = [0.0005, 0.0003, 0.0]', f'name = "linear-drag", place = "{CHASER}", c = 0.04'],
+    "stick-slip/dwell": [f'name = "friction-dwell-time", place = "{PLATE}", mu_s_inf = 0.29, time_constant = 0.6'],
+    "stick-slip/tilt": ['name = "tilt", place = "world", vector = [0.03, -0.02, 0.0]'],
+    "stick-slip/mass": ['name = "body-mass", place = "body:slider", mass = 1.26'],
+    "stick-slip/force-bias": ['name = "sensor-bias", place = "sensor:sensor.spring.force", bias = [0.06, -0.03, 0.0]'],
+    "stick-slip/stribeck+tilt": [f'name = "friction-stribeck", place = "{PLATE}", mu_s = 0.28, mu_d = 0.24, v_s = 0.004', 'name = "tilt", place = "world", vector = [0.02, 0.01, 0.0]'],
+}
+
+
+def run(command, log):
+    with open(log, "w") as file:
+        return subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
+
+
+def numbers(value):
+    return value if isinstance(value, list) else [value]
+
+
+def offs(planted, effect):
+    """How many of its standard errors each number of an effect is off."""
+    found = []
+    for key, true in planted.items():
+        value, error = effect["params"].get(key), effect["std_err"].get(key)
+        if isinstance(true, str) or value is None or error is None:
+            continue
+        pairs = zip(numbers(true), numbers(value), numbers(error))
+        found += [abs(v - t) / e for t, v, e in pairs if isinstance(e, (int, float)) and e > 0]
+    return found
+
+
+def is_same(effect, planted):
+    plain = lambda place: place.replace("link:", "body:")
+    return effect["name"] == planted["name"] and plain(effect["place"]) == plain(planted["place"])
+
+
+def diagnosed(softdock, recordings, out, case):
+    rig = case.split("/")[0]
+    scenario, folder = SCENARIOS / f"{rig}.toml", out / case
+    folder.mkdir(parents=True, exist_ok=True)
+    effects = [argument for entry in CASES[case] for argument in ("--effect", entry)]
+    plant = [softdock, "plant", scenario, "--like", recordings / LIKE[rig], "--seed", "11", *effects, "--out", folder / "set"]
+    if not (folder / "set").exists() and run(plant, folder / "plant.log") != 0:
+        return f"| {case} | not planted: see {folder / 'plant.log'} | | | | |", False
+    began = time.time()
+    run([softdock, "diagnose", scenario, folder / "set", "--out", folder / "out", "--quiet"], folder / "diagnose.log")
+    seconds = time.time() - began
+    told_file = folder / "out" / "diagnosis.json"
+    if not told_file.exists():
+        return f"| {case} | no diagnosis: see {folder / 'diagnose.log'} | | | | |", False
+    told = json.loads(told_file.read_text())
+    planted = [tomllib.loads(f"x = {{ {entry} }}")["x"] for entry in CASES[case]]
+    found = told["effects"]
+    matched = [(p, next((e for e in found if is_same(e, p)), None)) for p in planted]
+    right = len(found) == len(planted) and all(e for _, e in matched)
+    off = [x for p, e in matched if e for x in offs({k: v for k, v in p.items() if k not in ("name", "place")}, e)]
+    words = "; ".join(f"{e['name']} at {e['place']}" for e in found)
+    worst = f"{max(off):.1f} of {len(off)}" if off else ""
+    return f"| {case} | {told['verdict']} | {'' if right else words} | {'yes' if right else 'no'} | {worst} | {seconds:.0f} |", right
+
+
+def main():
+    if len(sys.argv) < 4:
+        sys.exit(__doc__)
+    softdock, recordings, out = (pathlib.Path(a).resolve() for a in sys.argv[1:4])
+    prefixes = sys.argv[4:] or [""]
+    cases = [case for case in CASES if any(case.startswith(p) for p in prefixes)]
+    print("| planted | verdict | told, where that is not what was planted | right | standard errors off, worst number | s |\n| --- | --- | --- | --- | --- | --- |", flush=True)
+    count = 0
+    for case in cases:
+        line, right = diagnosed(softdock, recordings, out, case)
+        count += right
+        print(line, flush=True)
+    print(f"\n{count} of {len(cases)} right")
+
+
+main()
