@@ -5,7 +5,9 @@ import json
 import pathlib
 import sys
 
-KEYS = {"joint-coulomb-friction": "c", "joint-viscous-friction": "b", "payload": "mass", "joint-cable-stiffness": "k", "actuator-delay": "delay"}
+KEYS = {"joint-coulomb-friction": "c", "joint-viscous-friction": "b", "payload": "mass", "joint-cable-stiffness": "k",
+        "actuator-delay": "delay", "actuator-gain": "gain", "actuator-lag": "time_constant", "joint-armature": "i_rotor", "body-mass": "mass", "sensor-scale": "scale",
+        "sensor-bias": "bias", "sensor-delay": "delay"}
 # MuJoCo's dry friction is a regularised constraint, ours a bristle: a share of the mismatch, not all of it.
 SHARE = 0.95
 

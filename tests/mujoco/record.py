@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Recordings of two robots by MuJoCo, each with something concealed, beside scenarios that know nothing of it.
 
-    record.py OUT        needs mujoco 4.0 and numpy from PyPI
+    record.py OUT [CASE…]        needs mujoco 4.0 and numpy from PyPI; without CASE all of CASES, MORE only where asked for
 
 OUT/<robot>/scenario.toml, OUT/<robot>/<case>/{recording.toml,run-1.csv …}, OUT/keys.json: what is in which case, for check.py alone.
 RK4 at 0.1 ms; torques of a PD loop along sums of sines, held at 500 Hz and recorded; joints at 250 Hz, bases at 50 Hz; white noise and rounding.
@@ -31,6 +31,76 @@ CASES = {
     "late": [("actuator-delay", 0, 0.006)],
     "dry-payload": [("joint-coulomb-friction", 1, 0.5), ("payload", None, 0.35)],
 }
+# Beyond what the table of simulators holds: the same of other laws, of sensors, and three at once.
+MORE = {
+    "viscous-sides": [("joint-viscous-asymmetry", 1, (0.6, 0.35))],
+    "quadratic": [("joint-quadratic-friction", 2, 0.25)],
+    "offset": [("joint-offset", 1, 0.3)],
+    "ripple": [("joint-torque-ripple", 2, (0.12, 17.0, 1.1))],
+    "pump": [("periodic-disturbance", 1, (0.15, 6.3, 0.4))],
+    "gain": [("actuator-gain", 1, 0.96)],
+    "lag": [("actuator-lag", 0, 0.01)],
+    "rotor": [("joint-armature", 2, 0.02)],
+    "heavy": [("body-mass", None, 1.08)],
+    "tacho": [("sensor-scale", 1, 1.03)],
+    "encoder": [("sensor-bias", 1, 0.004)],
+    "encoder-late": [("sensor-delay", 2, 0.004)],
+    "dahl": [("joint-coulomb-friction", 1, 0.4)],
+    "viscous-rotor": [("joint-viscous-friction", 1, 0.5), ("joint-armature", 2, 0.02)],
+    "viscous-payload-late": [("joint-viscous-friction", 2, 0.4), ("payload", None, 0.25), ("actuator-delay", 0, 0.006)],
+    "spring-gain-tacho": [("joint-cable-stiffness", 2, 2.0), ("actuator-gain", 1, 0.97), ("sensor-scale", 0, 1.04)],
+}
+# Of a dry friction that is given as a law of its own, not by MuJoCo's constraint: deflection of its bristle, rad.
+PRE_SLIDING = 3e-4
+
+
+class Laws:
+    """Efforts and readings that MuJoCo has no name for, evaluated at the begin of every step."""
+
+    def __init__(self, effects, count):
+        self.effects, self.bristle, self.lagged, self.last = effects, np.zeros(count), None, None
+
+    def effort(self, t, q, v, command):
+        """What acts on the joints."""
+        out = command.copy()
+        for effect, j, size in self.effects:
+            if effect == "actuator-gain":
+                out[j] *= size
+            elif effect == "actuator-lag":
+                self.lagged = command[j] if self.lagged is None else self.lagged + (1 - np.exp(-STEP / size)) * (command[j] - self.lagged)
+                out[j] = self.lagged
+        for effect, j, size in self.effects:
+            if effect == "joint-viscous-asymmetry":
+                out[j] -= size[0 if v[j] >= 0 else 1] * v[j]
+            elif effect == "joint-quadratic-friction":
+                out[j] -= size * abs(v[j]) * v[j]
+            elif effect == "joint-offset":
+                out[j] += size
+            elif effect == "joint-torque-ripple":
+                out[j] += size[0] * np.sin(size[1] * q[j] + size[2])
+            elif effect == "periodic-disturbance":
+                out[j] += size[0] * np.sin(2 * np.pi * size[1] * t + size[2])
+            elif effect == "dahl":
+                moved = 0.0 if self.last is None else q[j] - self.last
+                end = np.copysign(PRE_SLIDING, moved)
+                self.bristle[j] = end + (self.bristle[j] - end) * np.exp(-abs(moved) / PRE_SLIDING)
+                self.last = q[j]
+                out[j] -= size / PRE_SLIDING * self.bristle[j]
+        return out
+
+    def read(self, kind, values):
+        """What the sensors make of it."""
+        values = values.copy()
+        for effect, j, size in self.effects:
+            if effect == "sensor-scale" and kind == "velocity":
+                values[j] *= size
+            elif effect == "sensor-bias" and kind == "position":
+                values[j] += size
+        return values
+
+    def lateness(self):
+        """Steps by which a joint's encoder is late."""
+        return {j: round(size / STEP) for effect, j, size in self.effects if effect == "sensor-delay"}
 
 
 def model_of(name, robot, effects):
@@ -49,8 +119,13 @@ def model_of(name, robot, effects):
             tool = spec.body(robot["tool"])
             tool.add_body(name="load", pos=[0.02, 0.0, 0.09], mass=size, inertia=[1e-9] * 3, ipos=[0, 0, 0], explicitinertial=True)
             continue
+        if effect == "body-mass":
+            spec.body(robot["tool"]).mass *= size
+            continue
         joint = spec.joint(robot["joints"][where])
-        if effect == "joint-coulomb-friction":
+        if effect == "joint-armature":
+            joint.armature = size
+        elif effect == "joint-coulomb-friction":
             joint.frictionloss = size
         elif effect == "joint-viscous-friction":
             joint.damping = [size, 0, 0] if np.ndim(joint.damping) else size
@@ -70,7 +145,11 @@ def reference(dice, count):
     return at, slope
 
 
-def record(model, robot, delay, dice):
+def record(model, robot, effects, dice):
+    delays = [(where, size) for effect, where, size in effects if effect == "actuator-delay"]
+    delay = delays[0] if delays else (None, 0.0)
+    laws = Laws(effects, len(robot["joints"]))
+    late_by, past_q = laws.lateness(), []
     data = mujoco.MjData(model)
     count = len(robot["joints"])
     is_free = robot["base"] == "free"
@@ -93,14 +172,19 @@ def record(model, robot, delay, dice):
             commands.append((t, command))
             held.append((k, command))
         if k % round(4e-3 / STEP) == 0:
-            joints.append((t, data.qpos[q0:].copy(), data.qvel[v0:].copy()))
+            seen = data.qpos[q0:].copy()
+            for j, steps in late_by.items():
+                seen[j] = past_q[max(k - steps, 0)][j] if k else seen[j]
+            joints.append((t, laws.read("position", seen), laws.read("velocity", data.qvel[v0:])))
         if is_free and k % round(20e-3 / STEP) == 0:
             bases.append((t, data.qpos[:3].copy(), data.qpos[3:7].copy(), data.qvel[3:6].copy()))
         now = held[-1][1].copy()
         if delay[0] is not None:
             past = [c for (since, c) in held[-12:] if since <= k - late]
             now[delay[0]] = past[-1][delay[0]] if past else 0.0
-        data.qfrc_applied[v0:] = now
+        if late_by:
+            past_q.append(data.qpos[q0:].copy())
+        data.qfrc_applied[v0:] = laws.effort(t, data.qpos[q0:].copy(), data.qvel[v0:].copy(), now)
         mujoco.mj_step(model, data)
     return commands, joints, bases
 
@@ -158,24 +242,37 @@ def scenario(name, robot):
     return text
 
 
+ALL = {**CASES, **MORE}
+
+
+def place_of(robot, effect, where):
+    if effect in ("payload", "body-mass"):
+        return f"body:{robot['tool']}"
+    joint = robot["joints"][where]
+    if effect.startswith("sensor-"):
+        return f"sensor:joint.{joint}.{'velocity' if effect == 'sensor-scale' else 'position'}"
+    return f"joint:{joint}"
+
+
 def main():
-    out = pathlib.Path(sys.argv[1])
+    out, wanted = pathlib.Path(sys.argv[1]), sys.argv[2:] or list(CASES)
     keys = {}
     for number, (name, robot) in enumerate(ROBOTS.items()):
         folder = out / name
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "scenario.toml").write_text(scenario(name, robot))
         (folder / f"{name}.urdf").write_text((HERE / f"{name}.urdf").read_text())
-        for case, effects in CASES.items():
-            late = [(where, size) for effect, where, size in effects if effect == "actuator-delay"]
-            model = model_of(name, robot, effects)
+        for case in wanted:
+            effects = ALL[case]
+            acting = [("dahl" if case == "dahl" else effect, where, size) for effect, where, size in effects]
+            model = model_of(name, robot, acting)
             (folder / case).mkdir(exist_ok=True)
             (folder / case / "recording.toml").write_text(manifest(name, case))
             for run in range(RUNS):
                 dice = np.random.default_rng([number, run])
-                recorded = record(model, robot, late[0] if late else (None, 0.0), dice)
-                write_run(folder / case / f"run-{run + 1}.csv", robot, recorded, np.random.default_rng([number, run, list(CASES).index(case)]))
-            place = lambda effect, where: f"body:{robot['tool']}" if effect == "payload" else f"joint:{robot['joints'][where]}"
+                recorded = record(model, robot, acting, dice)
+                write_run(folder / case / f"run-{run + 1}.csv", robot, recorded, np.random.default_rng([number, run, list(ALL).index(case)]))
+            place = lambda effect, where: place_of(robot, effect, where)
             keys[f"{name}/{case}"] = [[effect, place(effect, where), size] for effect, where, size in effects]
             print(f"{name}/{case}", flush=True)
     (out / "keys.json").write_text(json.dumps(keys, indent=1) + "\n")

@@ -16,15 +16,15 @@ import time
 import tomllib
 
 SCENARIOS = pathlib.Path(__file__).resolve().parents[2] / "scenarios" / "rigs"
-LIKE = {"tumbler": "tumbler-05", "arm-bench": "arm-bench-05", "dock-impact": "dock-impact-05", "air-table": "air-table-02", "stick-slip": "stick-slip-03"}
+LIKE = {"tumbler": "tumbler-05", "arm-bench": "arm-bench-03", "dock-impact": "dock-impact-05", "air-table": "air-table-02", "stick-slip": "stick-slip-03"}
 TARGET, CHASER, GYRO, STAR = "body:target", "body:chaser", "sensor:body.target.angular_velocity", "sensor:body.target.orientation"
 DROGUE, PLATE = "contact:probe/drogue", "contact:slider/plate"
 
 CASES = {
     "tumbler/gravity": [f'name = "gravity-gradient", place = "{TARGET}", mean_motion = 0.001114'],
-    "tumbler/flexible": [f'name = "flexible-appendage", place = "{TARGET}", frequency = 0.05, damping = 0.01, coupling = [1.5, 0.5, -2.0]'],
+    "tumbler/flexible": [f'name = "flexible-appendage", place = "{TARGET}", frequency = 0.06, damping = 0.01, coupling = [3.0, 1.0, -4.0]'],
     "tumbler/dissipation": [f'name = "internal-dissipation", place = "{TARGET}", i_damper = 4.0, c = 0.4'],
-    "tumbler/pump": [f'name = "periodic-disturbance", place = "{TARGET}", amplitude = [0.004, 0.0, 0.003], frequency = 0.43, phase = 0.7'],
+    "tumbler/pump": [f'name = "periodic-disturbance", place = "{TARGET}", amplitude = [0.03, 0.0, 0.02], frequency = 0.43, phase = 0.7'],
     "tumbler/world-torque": [f'name = "constant-torque", place = "{TARGET}", vector = [0.0006, -0.0003, 0.0004], frame = "world"'],
     "tumbler/bias": [f'name = "sensor-bias", place = "{GYRO}", bias = [0.0006, -0.0004, 0.0002]'],
     "tumbler/scale": [f'name = "sensor-scale", place = "{GYRO}", scale = 1.006'],
@@ -32,7 +32,7 @@ CASES = {
     "tumbler/turned": [f'name = "sensor-misalignment", place = "{GYRO}", angle = [0.006, -0.004, 0.009]'],
     "tumbler/slosh-small": [f'name = "slosh", place = "{TARGET}", mass = 6.0, frequency = 0.2, damping = 0.03, position = [0.1, -0.3, 0.5]'],
     "tumbler/damping+late": [f'name = "angular-damping", place = "{TARGET}", c = 0.01', f'name = "sensor-delay", place = "{STAR}", delay = 0.12'],
-    "tumbler/flexible+torque": [f'name = "flexible-appendage", place = "{TARGET}", frequency = 0.22, damping = 0.02, coupling = [2.0, 0.0, 1.5]',
+    "tumbler/flexible+torque": [f'name = "flexible-appendage", place = "{TARGET}", frequency = 0.07, damping = 0.02, coupling = [3.0, 0.0, 3.5]',
                                 f'name = "constant-torque", place = "{TARGET}", vector = [0.0004, 0.0002, -0.0005]'],
     "tumbler/inertia+bias": [f'name = "body-inertia", place = "{TARGET}", inertia = [95.0, 163.0, 214.0, 0.8, 0.0, -1.2]',
                              f'name = "sensor-bias", place = "{GYRO}", bias = [0.0004, 0.0005, -0.0003]'],

@@ -45,7 +45,7 @@ pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Cour
     if !within.members.is_empty() && left.rise > left.bound {
         nominal = problem.fit(&nominal, within, WITHIN)?;
     }
-    let hypotheses = |now: &Fitted| hypotheses_of(&now.built, stage.tapes, own);
+    let hypotheses = |now: &Fitted| hypotheses_of(&problem, now, own);
     let usual = || catalogue::within(&Facts::new(&nominal.built, stage.tapes), &USUAL);
     let numbers = plant.scenario.tolerance.is_exact().then(usual);
     let found = search(&problem, nominal, &hypotheses, numbers)?;

@@ -25,6 +25,8 @@ pub struct Facts {
     pub sensors: Vec<SensorFact>,
     /// Longest run, s.
     pub duration: f64,
+    /// Frequencies at which what a model leaves swings, Hz; none before that was looked at.
+    pub lines: Vec<f64>,
 }
 
 impl Facts {
@@ -46,6 +48,7 @@ impl Facts {
             thrusters: thrusters(built),
             sensors,
             duration: tapes.iter().map(|t| t.span.1 - t.span.0).fold(0.0, f64::max),
+            lines: Vec::new(),
         }
     }
 }
@@ -53,7 +56,8 @@ impl Facts {
 impl Facts {
     /// What a definition may look at around a place.
     pub fn survey(&self) -> Survey<'_> {
-        Survey { joints: &self.joints, bodies: &self.bodies, contacts: &self.contacts, duration: self.duration }
+        let Self { joints, bodies, contacts, duration, lines, .. } = self;
+        Survey { joints, bodies, contacts, duration: *duration, lines }
     }
 
     /// Without the joints and bodies that effects have brought: a mount's tip has no friction of its own.

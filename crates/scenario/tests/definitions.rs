@@ -69,6 +69,7 @@ fn candidates(effect: &EffectDef) -> Vec<Candidate> {
         bodies: &bodies,
         contacts: std::slice::from_ref(&contact),
         duration: 40.0,
+        lines: &[0.37],
     };
     let of = &effect.identify.candidates;
     let mut all = of.at_joint(&joint, &survey);

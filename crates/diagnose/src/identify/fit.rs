@@ -146,6 +146,11 @@ impl<'a> Problem<'a> {
 
     /// The nominal model along all runs.
     pub fn begin(&self) -> Result<Fitted, DiagnoseError> {
+        self.refined(self.begun()?)
+    }
+
+    /// The same with intervals of one length.
+    fn begun(&self) -> Result<Fitted, DiagnoseError> {
         if self.runs.is_empty() {
             return Err(self.lost());
         }
@@ -177,7 +182,7 @@ impl<'a> Problem<'a> {
             converged: false,
         };
         self.follow(&mut none)?;
-        self.refined(self.settle(none, SETTLING, false)?)
+        self.settle(none, SETTLING, false)
     }
 
     fn cut(&self, built: &Built, run: usize) -> Result<Track, DiagnoseError> {
@@ -235,14 +240,13 @@ impl<'a> Problem<'a> {
 
     /// A set along other runs than those that it was fitted to, its numbers as they are.
     pub fn along(&self, of: &Fitted, set: &EffectSet) -> Result<Fitted, DiagnoseError> {
-        let nominal = self.begin()?;
-        let mut now = self.with(&nominal, set.frozen())?;
+        let mut now = self.with(&self.begun()?, set.frozen())?;
         now.spread = Spread { local: Vec::new(), ..of.spread.clone() };
         self.follow(&mut now)?;
         self.settle(now, SETTLING, true)
     }
 
-    fn lost(&self) -> DiagnoseError {
+    pub(crate) fn lost(&self) -> DiagnoseError {
         let file = self.runs.first().map_or_else(String::new, |r| self.stage.tapes[*r].file.clone());
         DiagnoseError::Replay {
             file,
@@ -429,22 +433,25 @@ impl<'a> Problem<'a> {
             }
         };
         let (own, steady) = self.columns(now, &bases, variations);
-        let columns = |run: usize| -> Vec<&Vec<Column>> {
-            let (mut own, mut steady) = (own[run].iter(), steady.get(run).into_iter().flat_map(|s| s.iter()));
-            variations.iter().filter_map(|v| if v.is_tolerated { steady.next() } else { own.next() }).collect()
+        let sides = |run: usize, own: &Columns| {
+            let (mut own, mut steady) = (own.iter(), steady.get(run).into_iter().flat_map(|s| s.iter()));
+            let columns: Vec<&Vec<Column>> =
+                variations.iter().filter_map(|v| if v.is_tolerated { steady.next() } else { own.next() }).collect();
+            frame.sides(&now.tracks[run], &links[run], &bases[run], &columns)
         };
         let channels = self.channels_of(&now.tracks);
         let count = channels.iter().flatten().map(Vec::len).sum();
         let price = price_of_factor(count, channels.iter().map(Vec::len).sum::<usize>() * self.channels.len());
-        let linear = |(k, channels): (usize, Vec<Vec<u16>>)| Linear {
+        // All columns of a screen are hundreds of megabytes: those of a run are gone before the next run's are copied.
+        let linear = |(k, (channels, own)): (usize, (Vec<Vec<u16>>, Columns))| Linear {
             run: k,
             price,
             links: Arc::clone(&links[k]),
-            sides: frame.sides(&now.tracks[k], &links[k], &bases[k], &columns(k)),
+            sides: sides(k, &own),
             channels,
             start: now.first.clone(),
         };
-        let runs: Vec<Linear> = channels.into_iter().enumerate().map(linear).collect();
+        let runs: Vec<Linear> = channels.into_iter().zip(own).enumerate().map(linear).collect();
         (now.links, now.steady) = (links, steady);
         Ok(Made { runs, count })
     }

@@ -1,5 +1,6 @@
 //! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
 
+use super::lines::lines;
 use super::pool::{Pool, price};
 use super::regression::{Regression, Spoken};
 use super::scale::Scale;
@@ -95,19 +96,23 @@ pub fn criterion(fit: &Fitted, many: usize) -> f64 {
 pub fn search(
     problem: &Problem<'_>,
     nominal: Fitted,
-    hypotheses: &dyn Fn(&Fitted) -> Vec<Hypothesis>,
+    hypotheses: &dyn Fn(&Fitted) -> Result<Vec<Hypothesis>, DiagnoseError>,
     mut numbers: Option<EffectSet>,
 ) -> Result<Found, DiagnoseError> {
     let watch = problem.stage.work.watch;
     let mut now = nominal.clone();
     let mut found = Found { nominal, best: now.clone(), tried: Vec::new(), shown: Vec::new(), left: 0.0 };
-    let many = hypotheses(&now).len();
+    let mut known = hypotheses(&now)?;
+    let many = known.len();
     let all = problem.power(&now);
     for round in 0..MOST {
         let room = MOST.saturating_sub(now.set.findings().count());
         let bare = bare(problem, &now)?;
-        let hypotheses = open(hypotheses(&now), &now, problem, &bare);
-        let cheapest = hypotheses.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
+        if round > 0 {
+            known = hypotheses(&now)?;
+        }
+        let candidates = open(known.clone(), &now, problem, &bare);
+        let cheapest = candidates.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
         let bounds = Bounds { round, many, cheapest, all };
         // A nominal model that leaves nothing is still asked what these recordings can show.
         let is_done = round > 0 && (problem.power(&now) < OWN * all || left_of(problem, &now, &bare).rise < cheapest);
@@ -119,7 +124,7 @@ pub fn search(
         if room == 0 || is_done || problem.stage.work.is_spent(Until::Search) {
             break;
         }
-        let looked = look(problem, &mut now, hypotheses, room.min(AT_ONCE))?;
+        let looked = look(problem, &mut now, candidates, room.min(AT_ONCE))?;
         if round == 0 {
             (found.shown, found.left) = (shown(&looked.pool, &looked.grown), looked.grown.left);
         }
@@ -131,7 +136,7 @@ pub fn search(
         now = without_idle(problem, best, (many, all))?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
-    let known = hypotheses(&now);
+    let known = hypotheses(&now)?;
     found.best = simplified(problem, now, &known, many)?;
     Ok(found)
 }
@@ -524,7 +529,12 @@ fn names(set: &EffectSet) -> String {
     if found.is_empty() { "nothing".to_owned() } else { found.join("; ") }
 }
 
-/// Hypotheses about a model's own parts.
-pub fn hypotheses_of(built: &crate::plant::Built, tapes: &[crate::tape::Tape], own: &Facts) -> Vec<Hypothesis> {
-    crate::catalogue::hypotheses(&Facts::new(built, tapes).of_parts(own))
+/// Hypotheses about a model's own parts, and about what swings in what a fit of it leaves.
+pub fn hypotheses_of(problem: &Problem<'_>, now: &Fitted, own: &Facts) -> Result<Vec<Hypothesis>, DiagnoseError> {
+    let facts = Facts { lines: lines(problem, now)?, ..Facts::new(&now.built, problem.stage.tapes).of_parts(own) };
+    if !facts.lines.is_empty() {
+        let list: Vec<String> = facts.lines.iter().map(|f| format!("{f:.4} Hz")).collect();
+        problem.stage.work.watch.step(&format!("lines at {}", list.join(", ")));
+    }
+    Ok(crate::catalogue::hypotheses(&facts))
 }

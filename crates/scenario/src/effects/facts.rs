@@ -87,6 +87,8 @@ pub struct Survey<'a> {
     pub contacts: &'a [ContactFact],
     /// Longest run, s.
     pub duration: f64,
+    /// Frequencies at which what the model leaves swings, Hz.
+    pub lines: &'a [f64],
 }
 
 impl JointFact {

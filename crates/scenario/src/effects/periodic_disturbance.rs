@@ -74,7 +74,8 @@ fn at_joint(joint: &JointFact, survey: &Survey<'_>) -> Vec<Candidate> {
         Coordinate::log("frequency", 1.0, [1.0 / survey.duration.max(1.0), 200.0]),
     ];
     let wave = Candidate::new(joint.place(), coordinates).encoded(Encoding::Phasor);
-    vec![wave.screened_on(2, &log_grid(0.5, 32.0, 1.0), &Along::each(0..2, SMALL)).expensive()]
+    let grid = [survey.lines, &log_grid(0.5, 32.0, 1.0)].concat();
+    vec![wave.screened_on(2, &grid, &Along::each(0..2, SMALL)).expensive()]
 }
 
 /// A vector that swings with one phase: a torque where the body turns, a force where it moves along.
@@ -96,7 +97,7 @@ fn swinging(body: &BodyFact, survey: &Survey<'_>, axes: &[Along]) -> Candidate {
     coordinates.push(Coordinate::free("phase", 0.0));
     coordinates.push(Coordinate::log("frequency", 1.0, [0.5 / survey.duration.max(1.0), 200.0]));
     let mut wave = Candidate::new(body.place(), coordinates).expensive();
-    for f in log_grid(2.0 / survey.duration.max(1.0), 16.0, 1.0) {
+    for f in [survey.lines, &log_grid(2.0 / survey.duration.max(1.0), 16.0, 1.0)].concat() {
         let at = |quarter: f64| {
             let mut base = wave.neutral();
             (base[3], base[4]) = (quarter, f.ln());

@@ -77,7 +77,11 @@ fn candidates(body: &BodyFact, survey: &Survey<'_>) -> Vec<Candidate> {
     vec![slosh]
 }
 
-/// Frequencies (Hz) at which a part that swings inside a body is screened: six periods in the longest run, and more.
+/// Frequencies (Hz) at which a part that swings inside a body is screened: those that the data show, six periods in the longest run, and more.
 pub(super) fn modes(survey: &Survey<'_>) -> Vec<f64> {
-    log_grid((6.0 / survey.duration).max(0.02), 2.0, 2.0)
+    let seen = survey.lines.iter().flat_map(|f| [*f, HELD * f]);
+    seen.chain(log_grid((6.0 / survey.duration).max(0.02), 2.0, 2.0)).collect()
 }
+
+/// With the body held a part swings slower than it is seen to: free, the body swings against it.
+const HELD: f64 = 0.92;
