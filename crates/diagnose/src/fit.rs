@@ -25,6 +25,11 @@ pub struct EffectSet {
 }
 
 impl EffectSet {
+    /// Whether the same effect at the same place is among its findings.
+    pub fn has_finding(&self, wanted: &Hypothesis) -> bool {
+        self.findings().any(|(h, _)| h.title() == wanted.title())
+    }
+
     /// The `[[effect]]` entries.
     pub fn effects(&self) -> Vec<Effect> {
         self.members.iter().map(|(h, x)| h.effect(x)).collect()

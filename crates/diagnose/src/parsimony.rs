@@ -4,7 +4,7 @@
 //! further numbers on what no law of the library takes away. Both go here, by the criterion of the search.
 
 use crate::error::DiagnoseError;
-use crate::fit::{Effort, fit};
+use crate::fit::{EffectSet, Effort, fit};
 use crate::hypothesis::{Alternative, Hypothesis};
 use crate::linear::Stage;
 use crate::plant::Plant;
@@ -80,8 +80,12 @@ pub(crate) fn prune(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<S
     Ok(now)
 }
 
-/// Hypotheses and coordinates of what a member becomes where some of its numbers do nothing, as far as they are known.
-pub(crate) fn plainer((h, x): &(Hypothesis, Vec<f64>), known: &[Hypothesis]) -> Vec<(Hypothesis, Vec<f64>)> {
+/// Hypotheses and coordinates of what a member of a set becomes where some of its numbers do nothing, as far as they are known and not in the set.
+pub(crate) fn plainer(
+    (h, x): &(Hypothesis, Vec<f64>),
+    set: &EffectSet,
+    known: &[Hypothesis],
+) -> Vec<(Hypothesis, Vec<f64>)> {
     let others = if h.is_tolerated() { Vec::new() } else { h.plainer(x) };
     let of = |other: Alternative| {
         let is_here = |p: &&Hypothesis| p.name == other.name && (p.place == h.place || other.is_at_contact);
@@ -89,7 +93,7 @@ pub(crate) fn plainer((h, x): &(Hypothesis, Vec<f64>), known: &[Hypothesis]) -> 
         let held = [&plain.held[..], &other.held[..]].concat();
         Some((Hypothesis { held, ..plain.clone() }, other.coordinates))
     };
-    others.into_iter().filter_map(of).collect()
+    others.into_iter().filter_map(of).filter(|(plain, _)| !set.has_finding(plain)).collect()
 }
 
 /// Puts a plainer law in the place of one that has grown into it, and a likelier one in that of its equal.
@@ -100,7 +104,7 @@ pub(crate) fn simplify(
     (all, brought): (&[Hypothesis], f64),
 ) -> Result<Standing, DiagnoseError> {
     for member in 0..now.judge().set.members.len() {
-        for (plain, x) in plainer(&now.judge().set.members[member], all) {
+        for (plain, x) in plainer(&now.judge().set.members[member], &now.judge().set, all) {
             let set = now.judge().set.without(member).with(&plain, &x);
             let near = fit(stage, plant, set.clone(), now.judge().segments.clone(), GLANCE)?;
             if near.rms() > PLAINER * now.judge().rms() {

@@ -95,7 +95,7 @@ pub fn search(
         if !is_worthwhile((stage, plant), &at_first, (&now, &best))? {
             break;
         }
-        let is_old = |h: &Hypothesis| now.judge().set.findings().any(|(m, _)| m.title() == h.title());
+        let is_old = |h: &Hypothesis| now.judge().set.has_finding(h);
         let members = best.judge().set.findings().map(|(h, _)| h);
         let added: Vec<String> = members.filter(|h| !is_old(h)).map(Hypothesis::title).collect();
         let together = (added.len() > 1).then(|| criterion(now.judge()) - criterion(best.judge()));

@@ -350,8 +350,7 @@ fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>, bare: &[Chain
         let rise = own.map(|(_, rise)| *rise).reduce(f64::max);
         place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
     };
-    let is_in = |h: &Hypothesis| now.set.findings().any(|(m, _)| m.title() == h.title());
-    all.into_iter().filter(|h| !is_in(h) && !is_dull(&h.place)).collect()
+    all.into_iter().filter(|h| !now.set.has_finding(h) && !is_dull(&h.place)).collect()
 }
 
 /// What the first looks at all hypotheses beside a fit say.
@@ -505,7 +504,7 @@ fn simplified(
     many: usize,
 ) -> Result<Fitted, DiagnoseError> {
     for member in now.set.members.clone() {
-        for (plain, x) in plainer(&member, known) {
+        for (plain, x) in plainer(&member, &now.set, known) {
             let Some(at) = now.set.members.iter().position(|m| m.0.title() == member.0.title()) else { continue };
             let Ok(glance) = problem.fit(&now, now.set.without(at).with(&plain, &x), GLANCE) else { continue };
             if criterion(&glance, many) - criterion(&now, many) > FAR {
