@@ -21,6 +21,7 @@
 //! (S, F, Y) alone, channel by channel, so that the samples are read once and the noise of a channel can still be another.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::borrow::Borrow;
 
 /// One interval: products of its columns, and how it goes on.
 #[derive(Clone, Debug)]
@@ -82,15 +83,21 @@ struct Seen {
 }
 
 /// Runs the filter and hands every interval to `look`.
-fn filter(nodes: &[Node], prior: Prior<'_>, mut look: impl FnMut(Seen)) -> Marginal {
-    let width = nodes.first().map_or(1, |n| n.d.ncols());
+fn filter<N: Borrow<Node>>(
+    nodes: impl IntoIterator<Item = N>,
+    prior: Prior<'_>,
+    mut look: impl FnMut(Seen),
+) -> Marginal {
+    let mut nodes = nodes.into_iter().peekable();
+    let width = nodes.peek().map_or(1, |n| n.borrow().d.ncols());
     let n_x = prior.start.len();
-    let n_u = nodes.first().map_or(n_x, |n| n_x + n.b.ncols());
+    let n_u = nodes.peek().map_or(n_x, |n| n_x + n.borrow().b.ncols());
     let mut l = DMatrix::from_diagonal(prior.start);
     let mut m = DMatrix::zeros(n_x, width);
     let mut total = DMatrix::zeros(width, width);
     let mut log_det = 0.0;
-    for ((node, noise), force) in nodes.iter().zip(prior.noise).zip(prior.force) {
+    for ((node, noise), force) in nodes.zip(prior.noise).zip(prior.force) {
+        let node = node.borrow();
         let gram = node.weighted(noise);
         let (zz, zy) = (gram.view((0, 0), (n_u, n_u)), gram.view((0, n_u), (n_u, width)));
         let (zs, sy) = (zz.columns(0, n_x), zy.rows(0, n_x));
@@ -124,8 +131,8 @@ impl Node {
     }
 }
 
-/// Eliminates states and forces of a run.
-pub fn eliminate(nodes: &[Node], prior: Prior<'_>) -> Marginal {
+/// Eliminates states and forces of a run, whose intervals may be made one after the other.
+pub fn eliminate<N: Borrow<Node>>(nodes: impl IntoIterator<Item = N>, prior: Prior<'_>) -> Marginal {
     filter(nodes, prior, |_| ())
 }
 

@@ -6,7 +6,7 @@
 
 use super::forces::{Force, first_spread, forces};
 use super::marginal::{Chain, Estimate, Linear, Local, Spread, estimate, price_of_factor, score};
-use super::track::{Base, Bases, Column, Frame, Link, Side, Told, Track, coordinates};
+use super::track::{Base, Bases, Column, Frame, Link, Side, Source, Told, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
@@ -432,42 +432,36 @@ impl<'a> Problem<'a> {
                 links.ok_or_else(|| self.lost())?.into_iter().map(Arc::new).collect()
             }
         };
-        let (own, steady) = self.columns(now, &bases, variations);
-        let sides = |run: usize, own: &Columns| {
-            let (mut own, mut steady) = (own.iter(), steady.get(run).into_iter().flat_map(|s| s.iter()));
-            let columns: Vec<&Vec<Column>> =
-                variations.iter().filter_map(|v| if v.is_tolerated { steady.next() } else { own.next() }).collect();
-            frame.sides(&now.tracks[run], &links[run], &bases[run], &columns)
-        };
+        let steady = self.steady(now, &bases, variations);
         let channels = self.channels_of(&now.tracks);
         let count = channels.iter().flatten().map(Vec::len).sum();
         let price = price_of_factor(count, channels.iter().map(Vec::len).sum::<usize>() * self.channels.len());
-        // All columns of a screen are hundreds of megabytes: those of a run are gone before the next run's are copied.
-        let linear = |(k, (channels, own)): (usize, (Vec<Vec<u16>>, Columns))| Linear {
-            run: k,
-            price,
-            links: Arc::clone(&links[k]),
-            sides: sides(k, &own),
-            channels,
-            start: now.first.clone(),
+        let linear = |(k, channels): (usize, Vec<Vec<u16>>)| {
+            let known = steady.get(k).into_iter().flat_map(|s| s.iter());
+            let mut known = known.map(|column| Source::Known(column));
+            let sources: Vec<Source<'_>> = variations
+                .iter()
+                .filter_map(|v| if v.is_tolerated { known.next() } else { Some(Source::Taken(v)) })
+                .collect();
+            let sides = frame.sides(&now.tracks[k], &links[k], &bases[k], &sources);
+            Linear { run: k, price, links: Arc::clone(&links[k]), sides, channels, start: now.first.clone() }
         };
-        let runs: Vec<Linear> = channels.into_iter().zip(own).enumerate().map(linear).collect();
+        let runs: Vec<Linear> = channels.into_par_iter().enumerate().map(linear).collect();
         (now.links, now.steady) = (links, steady);
         Ok(Made { runs, count })
     }
 
-    /// Columns of some numbers, run by run: those that are taken each time, and those that are taken once.
-    fn columns(&self, now: &Fitted, bases: &[Bases], variations: &[Variation]) -> (Vec<Columns>, Vec<Arc<Columns>>) {
+    /// Columns of the numbers that are taken once, run by run.
+    fn steady(&self, now: &Fitted, bases: &[Bases], variations: &[Variation]) -> Vec<Arc<Columns>> {
+        let taken: Vec<&Variation> = variations.iter().filter(|v| v.is_tolerated).collect();
+        let is_known = |own: &Arc<Columns>| own.len() == taken.len();
+        if taken.is_empty() || now.steady.len() == now.tracks.len() && now.steady.iter().all(is_known) {
+            return now.steady.clone();
+        }
         let frame = self.frame(now);
-        let of = |is_tolerated: bool| -> Vec<Columns> {
-            let taken: Vec<&Variation> = variations.iter().filter(|v| v.is_tolerated == is_tolerated).collect();
-            let columns = |(t, b): (&Track, &Bases)| taken.par_iter().map(|v| frame.columns(t, b, v)).collect();
-            now.tracks.par_iter().zip(bases).map(columns).collect()
-        };
-        let count = variations.iter().filter(|v| v.is_tolerated).count();
-        let is_known =
-            count == 0 || now.steady.len() == now.tracks.len() && now.steady.iter().all(|s| s.len() == count);
-        (of(false), if is_known { now.steady.clone() } else { of(true).into_iter().map(Arc::new).collect() })
+        let columns =
+            |(t, b): (&Track, &Bases)| Arc::new(taken.par_iter().map(|v| frame.columns(t, b, v)).collect::<Columns>());
+        now.tracks.par_iter().zip(bases).map(columns).collect()
     }
 
     /// What the unknown forces of a fit do to the readings, and what these are off by in intervals that are not followed: mean square over intervals,

@@ -132,9 +132,9 @@ impl Linear {
         self.channels.iter().map(|own| counts(own)).collect()
     }
 
-    /// Products of very many columns, over factors of the noise.
-    fn summed(&self, columns: &[usize], factors: &[DVector<f64>]) -> Vec<Node> {
-        let node = |i: usize| {
+    /// Products of very many columns, over factors of the noise: a few intervals at a time, for each takes megabytes.
+    fn summed<'s>(&'s self, columns: &'s [usize], factors: &'s [DVector<f64>]) -> impl Iterator<Item = Node> + 's {
+        let node = move |i: usize| {
             let (link, side, channels, factor) = (&self.links[i], &self.sides[i], &self.channels[i], &factors[i]);
             let kept: Vec<usize> = columns.iter().copied().chain([side.y.ncols() - 1]).collect();
             let (n_x, n_f) = (link.s.ncols(), link.f.ncols());
@@ -151,7 +151,9 @@ impl Linear {
             let gram = all.tr_mul(&all);
             Node { grams: vec![(0, gram)], a: link.a.clone(), b: link.b.clone(), d: side.d.select_columns(&kept) }
         };
-        (0..self.links.len()).into_par_iter().map(node).collect()
+        let count = self.links.len();
+        let few = move |from: usize| (from..count.min(from + AT_A_TIME)).into_par_iter().map(node).collect::<Vec<_>>();
+        (0..count).step_by(AT_A_TIME).flat_map(few)
     }
 }
 
@@ -206,13 +208,15 @@ pub fn products(runs: &[Chain], spread: &Spread) -> Vec<Marginal> {
     runs.par_iter().map(|run| run.products(spread)).collect()
 }
 
+/// Intervals whose products are at hand at a time.
+const AT_A_TIME: usize = 4;
+
 /// Products of very many columns over all runs, at one spread.
 pub fn wide_products(runs: &[Linear], columns: &[usize], spread: &Spread) -> Marginal {
     let of = |run: &Linear| {
         let [factors, force] = spread.by_interval(run.run, run.channels.len());
         let ones = vec![DVector::from_element(spread.noise.len(), 1.0); factors.len()];
-        let nodes = run.summed(columns, &factors);
-        let found = eliminate(&nodes, Prior { start: &run.start, force: &force, noise: &ones });
+        let found = eliminate(run.summed(columns, &factors), Prior { start: &run.start, force: &force, noise: &ones });
         let log_noise = log_noise(&run.samples(), &factors);
         Marginal { log_det: found.log_det + log_noise + spread.price_of(run.run, run.price), ..found }
     };

@@ -192,11 +192,17 @@ impl Frame<'_> {
         Some(answer)
     }
 
-    /// Columns of a number along a run, carried from interval to interval as far as it brings memory of its own: ∂r/∂θ and ∂end/∂θ of each.
+    /// Columns of a number along a run: ∂r/∂θ and ∂end/∂θ of each interval.
     pub fn columns(&self, track: &Track, bases: &Bases, variation: &Variation) -> Vec<Column> {
+        let mut out = Vec::with_capacity(track.intervals.len());
+        self.put_columns(track, bases, variation, |column| out.push(column));
+        out
+    }
+
+    /// The same one after the other, carried from interval to interval as far as the number brings memory of its own.
+    fn put_columns(&self, track: &Track, bases: &Bases, variation: &Variation, mut put: impl FnMut(Column)) {
         let brings = has_memory(&variation.built, self.built);
         let mut carried: Option<Start> = None;
-        let mut out = Vec::with_capacity(track.intervals.len());
         let bases = if variation.built.model.is_smooth() { &bases.glanced } else { &bases.exact };
         for (interval, (r, end)) in track.intervals.iter().zip(bases) {
             let mut start = interval.start.fitted_to(&variation.built);
@@ -204,14 +210,13 @@ impl Frame<'_> {
                 start.remember(before, self.built);
             }
             let Some((q, e)) = self.glance(&variation.built, track.run, interval, &start) else {
-                out.push((DVector::zeros(r.len()), DVector::zeros(self.freedoms.len())));
+                put((DVector::zeros(r.len()), DVector::zeros(self.freedoms.len())));
                 continue;
             };
             let by = DVector::from_vec(e.difference(end, self.freedoms)) / variation.step;
-            out.push(((q - r) / variation.step, by));
+            put(((q - r) / variation.step, by));
             carried = Some(e);
         }
-        out
     }
 
     /// The same run with the memory that the model has beside another's carried along from interval to interval.
@@ -301,24 +306,42 @@ impl Frame<'_> {
     }
 
     /// Residuals and defects of a run, as they would be without the forces that push it, beside columns of numbers.
-    pub fn sides(&self, track: &Track, links: &[Link], bases: &Bases, columns: &[&Vec<Column>]) -> Vec<Side> {
-        let n_x = self.freedoms.len();
-        let of = |i: usize| {
-            let (r, end) = &bases.exact[i];
-            let next = track.intervals.get(i + 1);
-            let defect = next.map_or_else(|| vec![0.0; n_x], |next| end.difference(&next.start, self.freedoms));
-            let width = columns.len() + 1;
-            let (mut y, mut d) = (DMatrix::zeros(r.len(), width), DMatrix::zeros(n_x, width));
-            for (k, column) in columns.iter().enumerate() {
-                y.column_mut(k).copy_from(&column[i].0);
-                d.column_mut(k).copy_from(&column[i].1);
+    ///
+    /// Columns are written where they stay: those of a screen are hundreds of megabytes.
+    pub fn sides(&self, track: &Track, links: &[Link], bases: &Bases, sources: &[Source<'_>]) -> Vec<Side> {
+        let side = |i: usize| self.bare_side(track, (&links[i], &bases.exact[i]), (i, sources.len()));
+        let mut sides: Vec<Side> = (0..track.intervals.len()).map(side).collect();
+        let mut places: Vec<Vec<_>> = sources.iter().map(|_| Vec::with_capacity(track.intervals.len())).collect();
+        for Side { y, d } in &mut sides {
+            let columns = y.column_iter_mut().zip(d.column_iter_mut());
+            places.iter_mut().zip(columns).for_each(|(own, column)| own.push(column));
+        }
+        places.into_par_iter().zip(sources).for_each(|(places, source)| {
+            let mut places = places.into_iter();
+            let mut write = |(by_reading, by_end): &Column| {
+                if let Some((mut y, mut d)) = places.next() {
+                    y.copy_from(by_reading);
+                    d.copy_from(by_end);
+                }
+            };
+            match source {
+                Source::Known(columns) => columns.iter().for_each(write),
+                Source::Taken(variation) => self.put_columns(track, bases, variation, |column| write(&column)),
             }
-            let (link, force) = (&links[i], &track.intervals[i].force);
-            y.column_mut(width - 1).copy_from(&(r - &link.f * force));
-            d.column_mut(width - 1).copy_from(&(DVector::from_vec(defect) - &link.b * force));
-            Side { y, d }
-        };
-        (0..track.intervals.len()).map(of).collect()
+        });
+        sides
+    }
+
+    /// The last column of an interval's side, before so many others that are still empty.
+    fn bare_side(&self, track: &Track, (link, (r, end)): (&Link, &Base), (i, numbers): (usize, usize)) -> Side {
+        let n_x = self.freedoms.len();
+        let next = track.intervals.get(i + 1);
+        let defect = next.map_or_else(|| vec![0.0; n_x], |next| end.difference(&next.start, self.freedoms));
+        let (mut y, mut d) = (DMatrix::zeros(r.len(), numbers + 1), DMatrix::zeros(n_x, numbers + 1));
+        let force = &track.intervals[i].force;
+        y.column_mut(numbers).copy_from(&(r - &link.f * force));
+        d.column_mut(numbers).copy_from(&(DVector::from_vec(defect) - &link.b * force));
+        Side { y, d }
     }
 
     /// The state at an instant of a run, from the interval that it lies in.
@@ -371,6 +394,15 @@ impl Frame<'_> {
 
 /// ∂r/∂θ and ∂end/∂θ of an interval.
 pub type Column = (DVector<f64>, DVector<f64>);
+
+/// Where the columns of a number come from.
+#[derive(Clone, Copy, Debug)]
+pub enum Source<'a> {
+    /// They are taken from a model in which it is moved.
+    Taken(&'a Variation),
+    /// They are known, interval by interval.
+    Known(&'a [Column]),
+}
 
 /// Events by interval, without those at the begin of a run that is commanded: what was commanded before is not recorded, and a late actuator still
 /// follows it.

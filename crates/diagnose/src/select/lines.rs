@@ -222,9 +222,9 @@ mod tests {
     #[test]
     fn a_weak_wave_in_coloured_noise_is_seen_where_it_is() {
         let peaks = peaks_of(&mut FftPlanner::new(), &runs(0.4, 0.4321));
-        let loudest = peaks.iter().max_by(|a, b| a.height.total_cmp(&b.height)).unwrap();
+        let loudest = peaks.iter().max_by(|a, b| a.height.total_cmp(&b.height)).map_or(0.0, |p| p.frequency);
         // A tenth of what a run of 300 s tells apart.
-        assert!((loudest.frequency - 0.4321).abs() < 0.1 / 300.0, "{}", loudest.frequency);
+        assert!((loudest - 0.4321).abs() < 0.1 / 300.0, "{loudest}");
     }
 
     #[test]
