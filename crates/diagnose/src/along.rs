@@ -2,14 +2,17 @@
 
 use crate::attempt::Attempt;
 use crate::catalogue;
+use crate::diagnosis::Rival;
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
-use crate::fit::Fit;
+use crate::fit::{EffectSet, Fit};
+use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach};
 use crate::linear::{Segment, Stage, Steps};
 use crate::plant::{Built, Plant};
 use crate::replay::Span;
-use crate::select::search::{Found, NEXT_TO_NOTHING, Remainder, hypotheses_of, remainder, search};
+use crate::select::search::{Found, NEXT_TO_NOTHING, Remainder, Tried, hypotheses_of, remainder, search};
+use crate::tell::near_the_best;
 use record::Role;
 use scenario::spec::Tolerance;
 use std::sync::Arc;
@@ -133,6 +136,38 @@ pub(crate) fn as_fit(stage: &Stage<'_>, fitted: &Fitted, segments: Vec<Segment>)
         iterations: 0,
         doubt: stage.doubt,
     }
+}
+
+/// What stands for a finding in other sets that are near the best one by the criterion: title of the finding, and its rival. A set that has all of the
+/// best one's findings and more stands for none of them, nor does a law that the finding is the plainer one of.
+pub(crate) fn rivals(course: &Course) -> Vec<(String, Rival)> {
+    let best = &course.found.best.set;
+    let tried = &course.found.tried;
+    let has_all = |set: &EffectSet| best.findings().all(|(h, _)| set.has_finding(h));
+    let is_best = |set: &EffectSet| has_all(set) && set.findings().all(|(h, _)| best.has_finding(h));
+    let own = tried.iter().filter(|t| is_best(&t.set)).map(|t| t.criteria[1]).reduce(f64::min);
+    let (Some(own), Some(nominal)) = (own, tried.first().map(|t| t.criteria[0])) else { return Vec::new() };
+    let is_near = |t: &&Tried| t.criteria[1] - own < near_the_best(nominal - own);
+    let mut found: Vec<(String, Rival)> = Vec::new();
+    for other in tried.iter().filter(|t| !has_all(&t.set)).filter(is_near) {
+        for (h, _) in best.findings().filter(|(h, _)| !other.set.has_finding(h)) {
+            let is_richer = |(r, x): &&(Hypothesis, Vec<f64>)| {
+                r.place == h.place && r.plainer(x).iter().any(|plain| plain.name == h.name)
+            };
+            for (r, _) in other.set.findings().filter(|(r, _)| !best.has_finding(r)).filter(|m| !is_richer(m)) {
+                let score_gap = other.criteria[1] - own;
+                let rival = Rival { name: r.name.to_owned(), place: r.place.clone(), score_gap };
+                match found
+                    .iter_mut()
+                    .find(|(of, k)| *of == h.title() && (&k.name, &k.place) == (&rival.name, &rival.place))
+                {
+                    Some((_, known)) => known.score_gap = known.score_gap.min(score_gap),
+                    None => found.push((h.title(), rival)),
+                }
+            }
+        }
+    }
+    found
 }
 
 /// What was tried, for the report.

@@ -4,11 +4,13 @@
 //! than a small part of the noise (of what the model misses there, where nothing touches) over every window. Steps of free flight are chosen alike, with those in contact held.
 
 use crate::linear::{Segment, Stage};
-use crate::plant::Built;
+use crate::number::short;
+use crate::plant::{Built, Plant};
 use crate::replay::Pace;
 use crate::tape::Tape;
 use nalgebra::DVector;
 use rayon::prelude::*;
+use scenario::spec::Integrator;
 
 /// Difference (rms over a window, units of noise) that a halved step may make.
 pub const TOLERANCE: f64 = 0.05;
@@ -199,4 +201,14 @@ fn usual_stretch(stops: &[f64]) -> f64 {
     let mut stretches: Vec<f64> = stops.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 1e-9).collect();
     stretches.sort_by(f64::total_cmp);
     stretches.get(stretches.len() * 9 / 10).copied().unwrap_or(f64::INFINITY)
+}
+/// That replays do not go by the scenario's own scheme, where they do not.
+pub(crate) fn said_of_scheme(own: Integrator, plant: &Plant) -> Option<String> {
+    (own.kind != plant.scenario.integrator.kind).then(|| {
+        format!(
+            "Replays go by Runge–Kutta with steps of their own, not by the scenario's integrator: what that loses at its step of {} s would be \
+             taken for physics.",
+            short(own.step_s)
+        )
+    })
 }

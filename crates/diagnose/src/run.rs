@@ -11,7 +11,7 @@ use crate::better::{SETTLED, is_clearly_better, is_near_noise, merit};
 use crate::catalogue::{self, hypotheses};
 use crate::clock::Clock;
 use crate::curves;
-use crate::diagnosis::{Diagnosis, Explained, Verdict};
+use crate::diagnosis::{Diagnosis, Explained, Rival, Verdict};
 use crate::error::DiagnoseError;
 use crate::evidence::{self, Evidence};
 use crate::facts::Facts;
@@ -24,7 +24,6 @@ use crate::linear::{Segment, Stage, Steps};
 use crate::locate::{Located, locate, locate_in, places};
 use crate::lost;
 use crate::noise::{self, Noise};
-use crate::number::short;
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::Pace;
@@ -39,7 +38,6 @@ use crate::work::{Until, Watch, Work};
 use rayon::prelude::*;
 use record::{RecordingSet, Role, Severity};
 use scenario::Scenario;
-use scenario::spec::Integrator;
 
 /// What the search left to judge and to tell.
 pub(crate) struct Findings {
@@ -51,6 +49,8 @@ pub(crate) struct Findings {
     /// Whether whole runs follow the corrected model, so that it was fitted to them.
     pub follows: bool,
     pub attempts: Vec<Attempt>,
+    /// Other explanations, by the title of what was found.
+    pub rivals: Vec<(String, Rival)>,
     pub verdict: Verdict,
     pub judgement: Judgement,
     /// Missing forces that the corrected model leaves, as the nominal model sees them; none where nothing was corrected.
@@ -161,7 +161,7 @@ fn prepare<'w>(
         (tapes, built) = load(&mut plant, set)?;
     }
     let mut begun = begin(&plant, (&built, tapes), set, parts, &mut clock)?;
-    said.extend(said_of_scheme(own, &plant));
+    said.extend(pace::said_of_scheme(own, &plant));
     begun.said.extend(said);
     Ok(Prepared { plant, inspection, begun, clock })
 }
@@ -198,6 +198,7 @@ fn diagnose_in(
     let (explained, helps) = share::explained(&judgement, &tapes, &found, window);
     let verdict = verdict(&judgement, &found, (follows, helps));
     let uncertainty = how_sure(&stage, &plant, &found, verdict)?;
+    let rivals = tell::rivals_by_round(&attempts, &found.set);
     clock.stage("write", 1.0);
     let findings = Findings {
         title: set.title.clone(),
@@ -207,6 +208,7 @@ fn diagnose_in(
         nominal,
         found,
         follows,
+        rivals,
         attempts,
         judgement,
         left,
@@ -264,6 +266,7 @@ fn diagnose_whole(
         found,
         follows,
         attempts: along::attempts(&course),
+        rivals: along::rivals(&course),
         judgement,
         left,
         uncertainty,
@@ -339,17 +342,6 @@ fn how_sure(stage: &Stage<'_>, plant: &Plant, found: &Fit, verdict: Verdict) -> 
             uncertainty::estimate(stage, plant, found)
         }
     }
-}
-
-/// That replays do not go by the scenario's own scheme, where they do not.
-fn said_of_scheme(own: Integrator, plant: &Plant) -> Option<String> {
-    (own.kind != plant.scenario.integrator.kind).then(|| {
-        format!(
-            "Replays go by Runge–Kutta with steps of their own, not by the scenario's integrator: what that loses at its step of {} s would be \
-             taken for physics.",
-            short(own.step_s)
-        )
-    })
 }
 
 /// What a search has found, and beside what.

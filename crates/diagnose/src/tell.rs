@@ -2,11 +2,13 @@
 
 use crate::accuracy::errors;
 use crate::along::USUAL;
+use crate::attempt::Attempt;
 use crate::condition::{self, Features, find_features};
 use crate::diagnosis::{Diagnosis, FORMAT, Found, Located as LocatedPlace, Remainder, Rival, Role, StdErr, Verdict};
 use crate::evidence::{
     self, Evidence, Heat, HeatRow, Hypothesis, Identifiable, Level, Parameter, Remark, Status, bin_edges, mean_squares,
 };
+use crate::fit::EffectSet;
 use crate::hypothesis::Hypothesis as Member;
 use crate::linear::{Segment, Stage};
 use crate::run::Findings;
@@ -182,7 +184,8 @@ fn effects(findings: &Findings, wanted: impl Fn(&Member) -> bool) -> Vec<Found> 
             }
         }
         let slides = slides(&fit.built, &effect.place);
-        let rivals = rivals(findings, h);
+        let of_this = findings.rivals.iter().filter(|(title, _)| *title == h.title());
+        let rivals = of_this.map(|(_, rival)| rival.clone()).collect();
         Found { name: effect.name, place: effect.place, params: effect.params, std_err, slides, rivals }
     };
     fit.set.members.iter().enumerate().filter(|(_, (h, _))| wanted(h)).map(of).collect()
@@ -196,16 +199,26 @@ fn slides(built: &crate::plant::Built, place: &str) -> bool {
     joints.any(|j| j.name == name && j.kind == multibody::JointKind::Prismatic)
 }
 
-/// Hypotheses whose refit came near the chosen one's in the round in which it was chosen; near that of the whole set where several were chosen
-/// together.
-fn rivals(findings: &Findings, chosen: &Member) -> Vec<Rival> {
-    let is_chosen = |a: &crate::attempt::Attempt| a.kept && a.name == chosen.name && a.place == chosen.place;
-    let Some(own) = findings.attempts.iter().find(|a| is_chosen(a)) else { return Vec::new() };
-    let Some(gain) = own.together.or(own.gain) else { return Vec::new() };
-    let same_round = findings.attempts.iter().filter(|a| a.round == own.round && !is_chosen(a));
-    let near =
-        same_round.filter_map(|a| a.gain.map(|g| (a, gain - g))).filter(|(_, gap)| *gap < (0.05 * gain).max(10.0));
-    near.map(|(a, gap)| Rival { name: a.name.clone(), place: a.place.clone(), score_gap: gap }).collect()
+/// Hypotheses whose refit came near the chosen one's in the round in which it was chosen, by the title of that; near that of the whole set where
+/// several were chosen together.
+pub(crate) fn rivals_by_round(attempts: &[Attempt], set: &EffectSet) -> Vec<(String, Rival)> {
+    let of = |chosen: &Member| -> Vec<(String, Rival)> {
+        let is_chosen = |a: &Attempt| a.kept && a.name == chosen.name && a.place == chosen.place;
+        let Some(own) = attempts.iter().find(|a| is_chosen(a)) else { return Vec::new() };
+        let Some(gain) = own.together.or(own.gain) else { return Vec::new() };
+        let is_found = |a: &Attempt| set.findings().any(|(h, _)| h.title() == a.title());
+        let same_round = attempts.iter().filter(|a| a.round == own.round && !is_found(a));
+        let near =
+            same_round.filter_map(|a| a.gain.map(|g| (a, gain - g))).filter(|(_, gap)| *gap < near_the_best(gain));
+        near.map(|(a, score_gap)| (chosen.title(), Rival { name: a.name.clone(), place: a.place.clone(), score_gap }))
+            .collect()
+    };
+    set.findings().flat_map(|(h, _)| of(h)).collect()
+}
+
+/// Difference of the information criterion up to which another explanation is told, of one that gains so much.
+pub(crate) fn near_the_best(gain: f64) -> f64 {
+    (0.05 * gain).max(10.0)
 }
 
 fn located(findings: &Findings, stage: &Stage<'_>, features: &Features) -> Vec<LocatedPlace> {
@@ -269,7 +282,7 @@ pub(crate) fn role(role: record::Role) -> Role {
 /// What the first screen's information matrices say, the most promising first.
 fn identifiability(findings: &Findings) -> Vec<Identifiable> {
     let first = findings.attempts.iter().filter(|a| a.round == 0);
-    let of = |a: &crate::attempt::Attempt| {
+    let of = |a: &Attempt| {
         let remark = match a.shown.condition {
             _ if a.shown.errors.iter().all(|e| e.1.is_infinite()) => "these recordings cannot show it",
             condition if condition > RIDGE => "only combinations of its parameters show",
@@ -308,11 +321,11 @@ fn nan_unless_finite(x: f64) -> f64 {
 const RIDGE: f64 = 1e4;
 
 fn ranking(findings: &Findings) -> Vec<Hypothesis> {
-    let near: Vec<Rival> = findings.found.set.findings().flat_map(|(h, _)| rivals(findings, h)).collect();
-    let is_rival = |a: &crate::attempt::Attempt| near.iter().any(|r| r.name == a.name && r.place == a.place);
+    let near: Vec<&Rival> = findings.rivals.iter().map(|(_, rival)| rival).collect();
+    let is_rival = |a: &Attempt| near.iter().any(|r| r.name == a.name && r.place == a.place);
     let held_back = nan_unless_finite(fall_of(findings) - findings.uncertainty.optimism);
     let nan = |x: Option<f64>| x.map_or(f64::NAN, nan_unless_finite);
-    let of = |a: &crate::attempt::Attempt| Hypothesis {
+    let of = |a: &Attempt| Hypothesis {
         name: a.name.clone(),
         place: a.place.clone(),
         screen_score: a.score,
@@ -329,7 +342,7 @@ fn ranking(findings: &Findings) -> Vec<Hypothesis> {
         },
         why: format!("round {}", a.round + 1),
     };
-    let worth = |a: &&crate::attempt::Attempt| a.fall.is_some() || a.share > 0.01;
+    let worth = |a: &&Attempt| a.fall.is_some() || a.share > 0.01;
     let mut all: Vec<Hypothesis> = findings.attempts.iter().filter(worth).map(of).collect();
     all.sort_by_key(|h| h.status);
     all

@@ -28,6 +28,13 @@ pub fn check(diagnosis: &Diagnosis, planted: &Effect) {
     let found: Vec<(&str, &str)> = diagnosis.effects.iter().map(|e| (e.name.as_str(), e.place.as_str())).collect();
     assert_eq!(diagnosis.verdict, Verdict::Explained, "{planted:?}: {found:?} {:?}", diagnosis.error);
     assert_eq!(found, [(planted.name.as_str(), planted.place.as_str())], "{:?}", diagnosis.effects);
+    // What is told stands for nothing else that is told.
+    let is_told = |name: &str, place: &str| found.contains(&(name, place));
+    assert!(
+        !diagnosis.effects.iter().flat_map(|e| &e.rivals).any(|r| is_told(&r.name, &r.place)),
+        "{:?}",
+        diagnosis.effects
+    );
     let holdout = diagnosis.error.holdout.unwrap();
     // Nothing restores a hinge: where it sticks and slips, free runs go apart under the true model too, and windows judge.
     let after = holdout.after.min(diagnosis.error.windowed.after);
