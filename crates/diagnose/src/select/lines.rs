@@ -8,6 +8,7 @@
 //! is held against the median of its surroundings, so that the colour of noise does not count. Of white noise it has a gamma distribution with as many
 //! degrees as there are runs. A peak's frequency is that of the parabola through the logarithms of three bins.
 
+use super::gamma_quantile_over_mean;
 use crate::error::DiagnoseError;
 use crate::identify::fit::{Fitted, Problem};
 use crate::identify::track::{Base, Interval, Link, Track};
@@ -160,14 +161,14 @@ fn peaks_of(planner: &mut FftPlanner<f64>, runs: &[Series]) -> Vec<Peak> {
     for (block, of_block) in power.chunks(SURROUNDINGS * own).enumerate() {
         let mut sorted = of_block.to_vec();
         sorted.sort_by(f64::total_cmp);
-        let noise = sorted[sorted.len() / 2] / median_of_gamma(degrees);
+        let noise = sorted[sorted.len() / 2] / (degrees * gamma_quantile_over_mean(degrees, 0.0));
         for i in 0..of_block.len() {
             let bin = block * SURROUNDINGS * own + i;
             if bin < CYCLES * own || bin + own >= power.len() {
                 continue;
             }
             let is_highest = power[bin - own..=bin + own].iter().all(|p| *p <= power[bin]);
-            let height = power[bin] / (noise * exceeded_by_gamma(degrees));
+            let height = power[bin] / (noise * degrees * gamma_quantile_over_mean(degrees, ONE_IN_MILLION));
             if is_highest && height > 1.0 {
                 let aside = vertex([power[bin - 1], power[bin], power[bin + 1]].map(f64::ln));
                 found.push(Peak { frequency: frequency(bin as f64 + aside), height });
@@ -181,19 +182,6 @@ fn peaks_of(planner: &mut FftPlanner<f64>, runs: &[Series]) -> Vec<Peak> {
 fn vertex([before, at, after]: [f64; 3]) -> f64 {
     let bend = before - 2.0 * at + after;
     if bend < 0.0 { 0.5 * (before - after) / bend } else { 0.0 }
-}
-
-/// Quantiles of a gamma distribution of unit scale (Wilson and Hilferty 1931).
-fn gamma_quantile(degrees: f64, score: f64) -> f64 {
-    degrees * (1.0 - 1.0 / (9.0 * degrees) + score / (3.0 * degrees.sqrt())).powi(3)
-}
-
-fn median_of_gamma(degrees: f64) -> f64 {
-    gamma_quantile(degrees, 0.0)
-}
-
-fn exceeded_by_gamma(degrees: f64) -> f64 {
-    gamma_quantile(degrees, ONE_IN_MILLION)
 }
 
 #[cfg(test)]

@@ -11,3 +11,8 @@ pub mod regression;
 pub mod scale;
 pub mod search;
 pub mod sets;
+
+/// Quantile of a gamma distribution over its mean, by the normal score: the cube root is nearly normal (Wilson and Hilferty 1931).
+fn gamma_quantile_over_mean(shape: f64, score: f64) -> f64 {
+    (1.0 - 1.0 / (9.0 * shape) + score / (9.0 * shape).sqrt()).powi(3)
+}

@@ -1,5 +1,6 @@
 //! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
 
+use super::gamma_quantile_over_mean;
 use super::lines::lines;
 use super::pool::{Pool, price};
 use super::regression::{Regression, Spoken};
@@ -136,7 +137,6 @@ pub fn search(
         now = without_idle(problem, best, (many, all))?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
-    let known = hypotheses(&now)?;
     found.best = simplified(problem, now, &known, many)?;
     Ok(found)
 }
@@ -320,9 +320,7 @@ fn left_of(problem: &Problem<'_>, fit: &Fitted, bare: &[Chain]) -> Remainder {
     let noise = fit.spread.noise.map(|x| x.min(stated));
     let silent = Spread { noise, ..Spread::steady(problem.forces.len(), problem.channels.len()) };
     let (mean, variance) = (0.5 * problem.variances() as f64, 1.25 * problem.variances() as f64);
-    // A gamma distribution of that mean and variance: the cube root is nearly normal.
-    let shape = mean * mean / variance;
-    let bound = mean * (1.0 - 1.0 / (9.0 * shape) + ONE_IN_HUNDRED / (9.0 * shape).sqrt()).powi(3);
+    let bound = mean * gamma_quantile_over_mean(mean * mean / variance, ONE_IN_HUNDRED);
     Remainder { rise: at(&silent) - at(&fit.spread), bound }
 }
 
