@@ -91,6 +91,31 @@ fn groups_become_runs_with_roles_of_their_own() {
 }
 
 #[test]
+fn a_long_file_is_cut_into_runs_by_its_clock() {
+    let second = "[[run]]\nfile = \"a.csv\"\nrole = \"holdout\"\nfrom_s = 4\n";
+    let csv = "t,joint.a.position\n0,1\n1,2\n2,3\n3,4\n4,5\n5,6\n";
+    let at = |toml: &str| exact(toml, &[("a.csv", csv.as_bytes())]);
+    let set = load(at(&format!("{HEAD}{FIT}from_s = 1.0\nto_s = 3.5\n{second}")).path());
+    let runs: Vec<_> = set.runs.iter().map(|r| (&*r.file, r.role, &*r.series[0].times, &*r.series[0].values)).collect();
+    assert_eq!(
+        runs,
+        [
+            ("a.csv#1-3s", Role::Fit, &[0.0, 1.0, 2.0][..], &[2.0, 3.0, 4.0][..]),
+            ("a.csv#4-5s", Role::Holdout, &[0.0, 1.0][..], &[5.0, 6.0][..]),
+        ]
+    );
+    for (toml, what) in [
+        (format!("{HEAD}{FIT}to_s = 4.5\n{second}"), "a second time"),
+        (format!("{HEAD}{FIT}from_s = 9\n"), "no row from 9 to inf s; it goes from 0 to 5 s"),
+        (format!("{HEAD}{FIT}from_s = 2\nto_s = 2\n"), "it ends, to_s = 2, before it begins, from_s = 2"),
+        (format!("{HEAD}{FIT}from_s = \"late\"\n"), "from_s = \"late\" is not a time"),
+    ] {
+        let said = error(at(&toml).path());
+        assert!(said.contains(what), "{said}");
+    }
+}
+
+#[test]
 fn repeated_times_are_averaged_and_commands_hold_the_last() {
     let csv = "t,joint.a.position,joint.a.effort_command\n0,1,5\n1,2,6\n1,4,7\n1,9,\n2,3,8\n";
     let set = load(one(csv).path());

@@ -67,10 +67,15 @@ fn add_file(
     let times = seconds(manifest, table)?;
     let sources = sources(set, manifest, table, &entry.file)?;
     set.remarks.extend(table.remarks.iter().cloned().map(|remark| remark.of_run(&entry.file)));
-    let all = group::stretches(table, entry, manifest.group.as_deref());
     let numbered = manifest.runs.iter().enumerate().filter(|(_, other)| other.file == entry.file);
     let (numbers, entries): (Vec<usize>, Vec<&RunEntry>) = numbered.unzip();
-    let (owner, left) = group::choose(manifest, &entries, &all)?;
+    let (all, (owner, left)) = if entry.span.is_some() {
+        (group::spans(manifest, &entries, (table, &times))?, ((0..entries.len()).collect(), None))
+    } else {
+        let all = group::stretches(table, entry, manifest.group.as_deref());
+        let chosen = group::choose(manifest, &entries, &all)?;
+        (all, chosen)
+    };
     set.remarks.extend(left.map(|remark| remark.of_run(&entry.file)));
     for (stretch, owner) in all.into_iter().zip(owner).filter(|(_, owner)| *owner != usize::MAX) {
         let series = read_stretch(set, manifest, table, (&stretch, &times), &sources)?;
@@ -171,7 +176,8 @@ fn read_stretch(
     };
     let mut timeline = time::order(table, times, stretch.rows.clone(), way_out)?;
     let mut remarks = Vec::new();
-    shift(&mut timeline, manifest.group.is_some(), &mut remarks);
+    let cut = manifest.group.is_some() || stretch.rows.len() < times.len();
+    shift(&mut timeline, cut, &mut remarks);
     if timeline.swapped > 0 {
         let what = format!("{} rows stood out of order of time and were sorted", timeline.swapped);
         remarks.push(Remark::new(Severity::Warning, what));

@@ -1,4 +1,4 @@
-//! Which rows make which run: a whole file, or its stretches of equal value in the group column.
+//! Which rows make which run: a whole file, spans of its time, or its stretches of equal value in the group column.
 
 use super::manifest::{Manifest, RunEntry};
 use super::spelling::listed;
@@ -37,6 +37,30 @@ pub(super) fn stretches(table: &Table, entry: &RunEntry, group: Option<&str>) ->
         }
     }
     all
+}
+
+/// The spans of time that the entries of one file ask for, an entry each.
+pub(super) fn spans(
+    manifest: &Manifest,
+    entries: &[&RunEntry],
+    (table, times): (&Table, &[f64]),
+) -> Result<Vec<Stretch>, RecordError> {
+    let one = |entry: &&RunEntry| {
+        let Some([from, to]) = entry.span else {
+            return Ok(Stretch { name: entry.file.clone(), value: String::new(), rows: 0..table.places.len() });
+        };
+        let is_in = |t: &f64| (from..to).contains(t);
+        let (first, last) = (times.iter().position(is_in), times.iter().rposition(is_in));
+        let Some((first, last)) = first.zip(last) else {
+            let ends = times.first().zip(times.last()).map(|(a, b)| format!("; it goes from {a} to {b} s"));
+            let problem =
+                format!("[[run]] of {}: no row from {from} to {to} s{}", entry.file, ends.unwrap_or_default());
+            return Err(RecordError::table(&manifest.path, problem));
+        };
+        let [from, to] = [times[first], times[last]];
+        Ok(Stretch { name: format!("{}#{from}-{to}s", entry.file), value: String::new(), rows: first..last + 1 })
+    };
+    entries.iter().map(one).collect()
 }
 
 /// Which stretches of one file belong to which of its entries.

@@ -20,6 +20,8 @@
 //! role   = "holdout"
 //! groups = ["130-149"]
 //! ```
+//!
+//! Without a group column, `from_s` and `to_s` cut a run out of a long file, in s of the file's clock; several runs may share it so.
 
 use super::channel_name::{self, ChannelName};
 use super::spelling::{hint, listed};
@@ -50,6 +52,8 @@ pub(super) struct RunEntry {
     pub(super) note: String,
     /// Values of the group column, none: all.
     pub(super) groups: Option<Vec<String>>,
+    /// From when, and before when, by the file's clock, s; none: all of it.
+    pub(super) span: Option<[f64; 2]>,
 }
 
 /// What `recording.toml` says.
@@ -110,7 +114,7 @@ fn of_one_file(file: &Path) -> Manifest {
         window_s: None,
         title: name.clone(),
         noise: BTreeMap::new(),
-        runs: vec![RunEntry { file: name, role: Role::Fit, note: String::new(), groups: None }],
+        runs: vec![RunEntry { file: name, role: Role::Fit, note: String::new(), groups: None, span: None }],
         time_column: "t".to_owned(),
         time_factor: 1.0,
         group: None,
@@ -268,8 +272,12 @@ impl Reader<'_> {
         let mut runs: Vec<RunEntry> = Vec::new();
         for (i, entry) in entries.iter().enumerate() {
             let run = self.run(entry, i + 1, grouped)?;
-            if !grouped && runs.iter().any(|other| other.file == run.file) {
-                let problem = format!("[[run]] {} names \"{}\" a second time; a run has one role", i + 1, run.file);
+            if !grouped && runs.iter().any(|other| other.file == run.file && overlap(other, &run)) {
+                let problem = format!(
+                    "[[run]] {} names \"{}\" a second time; a run has one role (from_s and to_s cut it in two)",
+                    i + 1,
+                    run.file
+                );
                 return Err(self.wrong(&run.file, problem));
             }
             runs.push(run);
@@ -282,7 +290,7 @@ impl Reader<'_> {
         let Value::Table(table) = entry else {
             return Err(self.wrong("run", format!("{place} must be a table with file and role")));
         };
-        self.check_keys(table, &place, &["file", "role", "note", "groups"])?;
+        self.check_keys(table, &place, &["file", "role", "note", "groups", "from_s", "to_s"])?;
         let file = self.text_of(table, "file", &place)?.filter(|file| !file.is_empty());
         let file = file.ok_or_else(|| self.wrong("run", format!("{place} has no file")))?;
         let role = match self.text_of(table, "role", &place)?.as_deref() {
@@ -305,7 +313,30 @@ impl Reader<'_> {
             }
             Some(value) => Some(self.groups(value, &place)?),
         };
-        Ok(RunEntry { file, role, note: self.text_of(table, "note", &place)?.unwrap_or_default(), groups })
+        let span = self.span(table, &place, grouped)?;
+        Ok(RunEntry { file, role, note: self.text_of(table, "note", &place)?.unwrap_or_default(), groups, span })
+    }
+
+    fn span(&self, table: &Table, place: &str, grouped: bool) -> Result<Option<[f64; 2]>, RecordError> {
+        let bound = |key: &str, without: f64| match table.get(key) {
+            None => Ok(without),
+            Some(value) => number(value).filter(|t| t.is_finite()).ok_or_else(|| {
+                self.wrong(key, format!("{place}: {key} = {value} is not a time; it is a number, in s"))
+            }),
+        };
+        let span = [bound("from_s", f64::NEG_INFINITY)?, bound("to_s", f64::INFINITY)?];
+        if span == [f64::NEG_INFINITY, f64::INFINITY] {
+            return Ok(None);
+        }
+        if grouped {
+            let problem = format!("{place}: from_s and to_s cut a file without a group column; choose groups instead");
+            return Err(self.wrong("_s", problem));
+        }
+        if span[0] >= span[1] {
+            let problem = format!("{place}: it ends, to_s = {}, before it begins, from_s = {}", span[1], span[0]);
+            return Err(self.wrong("to_s", problem));
+        }
+        Ok(Some(span))
     }
 
     fn groups(&self, value: &Value, place: &str) -> Result<Vec<String>, RecordError> {
@@ -353,6 +384,13 @@ impl Reader<'_> {
             None => RecordError::Table { path: self.path.clone(), problem },
         }
     }
+}
+
+/// Whether two runs of one file share a moment.
+fn overlap(a: &RunEntry, b: &RunEntry) -> bool {
+    let whole = [f64::NEG_INFINITY, f64::INFINITY];
+    let ([a_from, a_to], [b_from, b_to]) = (a.span.unwrap_or(whole), b.span.unwrap_or(whole));
+    a_from < b_to && b_from < a_to
 }
 
 fn number(value: &Value) -> Option<f64> {
