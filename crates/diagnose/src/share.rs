@@ -5,7 +5,9 @@
 //! E₀ and E₁ are mean squares in units of noise of the nominal and of the corrected model, each window with an initial state of its own under
 //! either model; noise alone leaves 1. Where no run was left out, those of the fit stand for them, and that is said. The interval is
 //! the middle 95 % of S over resampled windows, run by run (stratified bootstrap: Efron and Tibshirani 1993, ch. 8). A model *helps*
-//! where that interval lies above zero and no run is predicted worse than before: a law that mends one run and breaks another is none.
+//! where that interval, or that of the windows' mean logarithm of E₀/E₁, lies above zero and no run is predicted worse than before: a law
+//! that mends one run and breaks another is none. Few windows may hold nearly all of the mismatch, where a model goes astray within them and
+//! mean squares say by chance how far; the logarithm counts every window alike.
 
 use crate::diagnosis::Explained;
 use crate::fit::Fit;
@@ -43,6 +45,11 @@ impl Window {
         if mismatch > 0.0 { (self.before - self.after) / mismatch } else { 0.0 }
     }
 
+    /// ln E₀/E₁, which is nothing where both are noise.
+    fn log_gain(&self) -> f64 {
+        (self.before.max(self.count) / self.after.max(self.count)).ln()
+    }
+
     /// Whether the corrected model is clearly worse; `doubt`: cost per scalar that is not told from a wrong noise level.
     fn is_harmed(&self, doubt: f64) -> bool {
         let [before, after] = [self.before, self.after].map(|cost| cost - self.count);
@@ -56,10 +63,11 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
     let left_out = judging == Role::Holdout;
     let runs = windows_of(judgement, |run| tapes[run].role == judging);
     let all = sum(runs.values().flatten());
-    let interval = interval(&runs);
+    let interval = interval(&runs, share_of);
     let harmed = runs.iter().filter(|(_, w)| sum(w.iter()).is_harmed(found.doubt));
     let harmed: Vec<String> = harmed.map(|(run, _)| tapes[*run].file.clone()).collect();
-    let helps = interval[0] > 0.0 && harmed.is_empty();
+    let is_gain = || all.share() > 0.0 && self::interval(&runs, mean_log_gain)[0] > 0.0;
+    let helps = (interval[0] > 0.0 || is_gain()) && harmed.is_empty();
     (Explained { share: all.share(), interval, window_s, runs: runs.len(), left_out, harmed }, helps)
 }
 
@@ -90,16 +98,28 @@ fn sum<'a>(windows: impl Iterator<Item = &'a Window>) -> Window {
     windows.fold(Window::default(), |sum, w| sum.plus(w))
 }
 
-fn interval(runs: &BTreeMap<usize, Vec<Window>>) -> [f64; 2] {
+/// What the windows of all runs explain together.
+fn share_of(windows: &[&Window]) -> f64 {
+    sum(windows.iter().copied()).share()
+}
+
+fn mean_log_gain(windows: &[&Window]) -> f64 {
+    windows.iter().map(|w| w.log_gain()).sum::<f64>() / windows.len().max(1) as f64
+}
+
+/// The middle 95 % of what resampled windows say.
+fn interval(runs: &BTreeMap<usize, Vec<Window>>, of: fn(&[&Window]) -> f64) -> [f64; 2] {
     let mut random = ChaCha8Rng::seed_from_u64(0);
-    let mut draw = |windows: &Vec<Window>| {
-        let pick = |_| (random.next_u64() % windows.len() as u64) as usize;
-        (0..windows.len()).map(pick).fold(Window::default(), |sum, i| sum.plus(&windows[i]))
+    let mut draw = || {
+        let mut drawn: Vec<&Window> = Vec::new();
+        for windows in runs.values() {
+            drawn.extend((0..windows.len()).map(|_| &windows[(random.next_u64() % windows.len() as u64) as usize]));
+        }
+        of(&drawn)
     };
-    let mut shares: Vec<f64> =
-        (0..DRAWS).map(|_| runs.values().fold(Window::default(), |sum, w| sum.plus(&draw(w))).share()).collect();
-    shares.sort_by(f64::total_cmp);
-    let at = |p: f64| shares[((DRAWS - 1) as f64 * p).round() as usize];
+    let mut said: Vec<f64> = (0..DRAWS).map(|_| draw()).collect();
+    said.sort_by(f64::total_cmp);
+    let at = |p: f64| said[((DRAWS - 1) as f64 * p).round() as usize];
     [at(TAIL), at(1.0 - TAIL)]
 }
 
@@ -117,14 +137,25 @@ mod tests {
         assert_eq!(window(1100.0, 600.0).share(), 0.5);
         assert_eq!(window(90.0, 80.0).share(), 0.0);
         let runs = BTreeMap::from([(0, vec![window(1100.0, 100.0); 5]), (1, vec![window(300.0, 100.0); 5])]);
-        assert_eq!(interval(&runs), [1.0, 1.0]);
+        assert_eq!(interval(&runs, share_of), [1.0, 1.0]);
     }
 
     #[test]
     fn an_interval_tells_windows_that_contradict_each_other() {
         let runs = BTreeMap::from([(0, vec![window(1100.0, 100.0), window(1100.0, 2100.0)])]);
-        let [low, high] = interval(&runs);
+        let [low, high] = interval(&runs, share_of);
         assert!(low < -0.9 && high > 0.9, "{low} {high}");
+    }
+
+    #[test]
+    fn one_window_that_goes_astray_does_not_hide_what_all_others_say() {
+        let mut windows = vec![window(5e4, 2e3); 20];
+        windows.extend([window(9e9, 2e9), window(1e8, 4e9)]);
+        let runs = BTreeMap::from([(0, windows)]);
+        assert!(interval(&runs, share_of)[0] < 0.0);
+        assert!(interval(&runs, mean_log_gain)[0] > 0.0);
+        let noise = BTreeMap::from([(0, vec![window(90.0, 99.0), window(98.0, 40.0)])]);
+        assert_eq!(interval(&noise, mean_log_gain), [0.0, 0.0]);
     }
 
     #[test]
