@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Effects that the practice sets do not have: planted by softdock in recordings like theirs, then diagnosed.
 
-    planted.py SOFTDOCK RECORDINGS OUT [CASE-PREFIX…]        CASE-PREFIX: tumbler, arm-bench/joint-, …
+    planted.py SOFTDOCK RECORDINGS OUT [CASE-PREFIX…] [seeds=11,12,13] [sizes=0.7,1.4]        CASE-PREFIX: tumbler, arm-bench/joint-, nothing/tumbler …
 
-What is planted is simulated by softdock itself, with four times finer steps, so that this shows what the search can tell apart and how sure
-its numbers are, not whether its laws are those of hardware. Prints a table: what was planted, what was told, whether it is the same, and by
-how many of its standard errors each number is off.
+`nothing/RIG` plants nothing: a null. A case is planted once for each seed, its sizes (what it names beside frequencies, orders, phases, positions
+and times) times one of `sizes`, in turn. What is planted is simulated by softdock itself, with four times finer steps, so that this shows what
+the search can tell apart and how sure its numbers are, not whether its laws are those of hardware. Prints a table: what was planted, what was
+told, whether it is the same, and by how many of its standard errors the worst number is off; then how many of all numbers of the right ones lie
+within their 95 % intervals (1.96 standard errors).
 """
 
 import json
@@ -74,6 +76,8 @@ CASES = {
     "stick-slip/stribeck+tilt": [f'name = "friction-stribeck", place = "{PLATE}", mu_s = 0.28, mu_d = 0.24, v_s = 0.004', 'name = "tilt", place = "world", vector = [0.02, 0.01, 0.0]'],
 }
 
+CASES |= {f"nothing/{rig}": [] for rig in LIKE}
+
 
 def run(command, log):
     with open(log, "w") as file:
@@ -101,44 +105,81 @@ def is_same(effect, planted):
     return effect["name"] == planted["name"] and plain(effect["place"]) == plain(planted["place"])
 
 
-def diagnosed(softdock, recordings, out, case):
-    rig = case.split("/")[0]
-    scenario, folder = SCENARIOS / f"{rig}.toml", out / case
+def planted_in(case, size):
+    """The effects of a case, the numbers that say how large they are times `size`."""
+    planted = [tomllib.loads(f"x = {{ {entry} }}")["x"] for entry in CASES[case]]
+    return [{key: grown(effect, key, value, size) for key, value in effect.items()} for effect in planted]
+
+
+def grown(effect, key, value, size):
+    grow = lambda x: x * size if isinstance(x, float) else x
+    if effect["name"] not in GROWING or key not in GROWING[effect["name"]]:
+        return value
+    return [grow(x) for x in value] if isinstance(value, list) else grow(value)
+
+
+GROWING = {
+    "flexible-appendage": ["coupling"], "internal-dissipation": ["c"], "periodic-disturbance": ["amplitude"], "constant-torque": ["vector"],
+    "sensor-bias": ["bias"], "sensor-delay": ["delay"], "sensor-misalignment": ["angle"], "slosh": ["mass"], "angular-damping": ["c"],
+    "joint-friction-asymmetry": ["c_plus", "c_minus"], "joint-torque-ripple": ["amplitude"], "joint-cable-stiffness": ["k"],
+    "joint-armature": ["i_rotor"], "actuator-lag": ["time_constant"], "joint-coulomb-friction": ["c"], "joint-viscous-friction": ["b"],
+    "payload": ["mass"], "contact-geometry-offset": ["offset"], "quadratic-drag": ["c"], "linear-drag": ["c"], "actuator-delay": ["delay"],
+    "tether-stiffness": ["k", "d"], "tilt": ["vector"],
+}
+
+
+def toml(value):
+    return json.dumps(value) if isinstance(value, str) else str(value)
+
+
+def diagnosed(softdock, recordings, out, case, seed, size):
+    rig = case.split("/")[1] if case.startswith("nothing/") else case.split("/")[0]
+    scenario, folder = SCENARIOS / f"{rig}.toml", out / case / f"{seed}-{size:g}"
     folder.mkdir(parents=True, exist_ok=True)
-    effects = [argument for entry in CASES[case] for argument in ("--effect", entry)]
-    plant = [softdock, "plant", scenario, "--like", recordings / LIKE[rig], "--seed", "11", *effects, "--out", folder / "set"]
+    planted = planted_in(case, size)
+    entries = [", ".join(f"{key} = {toml(value)}" for key, value in effect.items()) for effect in planted]
+    effects = [argument for entry in entries for argument in ("--effect", entry)]
+    plant = [softdock, "plant", scenario, "--like", recordings / LIKE[rig], "--seed", str(seed), *effects, "--out", folder / "set"]
+    what = f"{case}, seed {seed}" + (f", times {size:g}" if size != 1.0 else "")
     if not (folder / "set").exists() and run(plant, folder / "plant.log") != 0:
-        return f"| {case} | not planted: see {folder / 'plant.log'} | | | | |", False
+        return f"| {what} | not planted: see {folder / 'plant.log'} | | | | |", False, []
     began = time.time()
-    run([softdock, "diagnose", scenario, folder / "set", "--out", folder / "out", "--quiet"], folder / "diagnose.log")
+    if not (folder / "out" / "diagnosis.json").exists():
+        run([softdock, "diagnose", scenario, folder / "set", "--out", folder / "out", "--quiet"], folder / "diagnose.log")
     seconds = time.time() - began
     told_file = folder / "out" / "diagnosis.json"
     if not told_file.exists():
-        return f"| {case} | no diagnosis: see {folder / 'diagnose.log'} | | | | |", False
+        return f"| {what} | no diagnosis: see {folder / 'diagnose.log'} | | | | |", False, []
     told = json.loads(told_file.read_text())
-    planted = [tomllib.loads(f"x = {{ {entry} }}")["x"] for entry in CASES[case]]
     found = told["effects"]
     matched = [(p, next((e for e in found if is_same(e, p)), None)) for p in planted]
-    right = len(found) == len(planted) and all(e for _, e in matched)
-    off = [x for p, e in matched if e for x in offs({k: v for k, v in p.items() if k not in ("name", "place")}, e)]
+    right = len(found) == len(planted) and all(e for _, e in matched) and (found != [] or told["verdict"] == "no-mismatch")
+    off = [x for p, e in matched if e for x in offs({k: v for k, v in p.items() if k not in ("name", "place")}, e)] if right else []
     words = "; ".join(f"{e['name']} at {e['place']}" for e in found)
     worst = f"{max(off):.1f} of {len(off)}" if off else ""
-    return f"| {case} | {told['verdict']} | {'' if right else words} | {'yes' if right else 'no'} | {worst} | {seconds:.0f} |", right
+    return f"| {what} | {told['verdict']} | {'' if right else words} | {'yes' if right else 'no'} | {worst} | {seconds:.0f} |", right, off
 
 
 def main():
     if len(sys.argv) < 4:
         sys.exit(__doc__)
     softdock, recordings, out = (pathlib.Path(a).resolve() for a in sys.argv[1:4])
-    prefixes = sys.argv[4:] or [""]
+    listed = lambda key, kind, usual: next(([kind(x) for x in a.split("=")[1].split(",")] for a in sys.argv[4:] if a.startswith(f"{key}=")), usual)
+    seeds, sizes = listed("seeds", int, [11]), listed("sizes", float, [1.0])
+    prefixes = [a for a in sys.argv[4:] if "=" not in a] or [case.split("/")[0] for case in CASES if not case.startswith("nothing/")]
     cases = [case for case in CASES if any(case.startswith(p) for p in prefixes)]
     print("| planted | verdict | told, where that is not what was planted | right | standard errors off, worst number | s |\n| --- | --- | --- | --- | --- | --- |", flush=True)
-    count = 0
-    for case in cases:
-        line, right = diagnosed(softdock, recordings, out, case)
+    count, all_off = 0, []
+    for turn, (case, seed) in enumerate((case, seed) for seed in seeds for case in cases):
+        line, right, off = diagnosed(softdock, recordings, out, case, seed, sizes[turn % len(sizes)])
         count += right
+        all_off += [off] if off else []
         print(line, flush=True)
-    print(f"\n{count} of {len(cases)} right")
+    print(f"\n{count} of {len(cases) * len(seeds)} right")
+    numbers_off = [x for off in all_off for x in off]
+    if numbers_off:
+        within = sum(x <= 1.96 for x in numbers_off)
+        print(f"{within} of {len(numbers_off)} numbers ({100 * within / len(numbers_off):.1f} %) within their 95 % intervals")
 
 
 main()
