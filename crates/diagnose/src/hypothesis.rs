@@ -30,8 +30,10 @@ pub struct Hypothesis {
     pub screens: Vec<ScreenPoint>,
     /// Kind of claim.
     pub tier: Tier,
-    /// Coordinates that no data of this kind can show; they stay at neutral.
+    /// Coordinates that no data of this kind can show, or that are in reserve; they stay at neutral.
     pub held: Vec<usize>,
+    /// Those of them that may be freed, see [`Self::relaxed`].
+    pub reserve: Vec<(usize, f64)>,
     /// Whether its screen is expensive: many points, or memory whose start is free too.
     pub is_dear: bool,
     /// Standard deviations of the coordinates where the scenario gives them a tolerance; empty for a finding.
@@ -41,7 +43,7 @@ pub struct Hypothesis {
 impl Hypothesis {
     /// What a definition proposes at a place, as a finding.
     pub fn new(def: &'static EffectDef, candidate: Candidate) -> Self {
-        let Candidate { place, constants, coordinates, encoding, screens, held, is_expensive } = candidate;
+        let Candidate { place, constants, coordinates, encoding, screens, held, reserve, is_expensive } = candidate;
         Self {
             def,
             name: def.name,
@@ -52,6 +54,7 @@ impl Hypothesis {
             screens,
             tier: def.identify.tier,
             held,
+            reserve,
             is_dear: is_expensive,
             tolerance: Vec::new(),
         }
@@ -91,6 +94,16 @@ impl Hypothesis {
         }
     }
 
+    /// The same with the coordinates free that it has in reserve, and where they begin beside `x`; none where it has none.
+    pub fn relaxed(&self, x: &[f64]) -> Option<(Self, Vec<f64>)> {
+        let (mut free, mut x) = (Self { reserve: Vec::new(), ..self.clone() }, x.to_vec());
+        for (k, start) in &self.reserve {
+            free.held.retain(|held| held != k);
+            x[*k] = *start;
+        }
+        (!self.reserve.is_empty()).then_some((free, x))
+    }
+
     /// Neutral or typical coordinates.
     pub fn neutral(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.neutral).collect()
@@ -110,7 +123,7 @@ impl Hypothesis {
     pub fn effect(&self, x: &[f64]) -> Effect {
         let mut params: BTreeMap<String, ParamValue> =
             self.constants.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
-        for (key, value) in self.decode(x) {
+        for (key, value) in self.decode(x).into_iter().filter(|(key, _)| !self.is_in_reserve(key)) {
             set(&mut params, key, value);
         }
         Effect { name: self.name.to_owned(), place: self.place.clone(), params }
@@ -191,6 +204,11 @@ impl Hypothesis {
     /// What it has to bring beside what its numbers cost, in the criterion.
     pub fn burden(&self) -> f64 {
         self.def.identify.penalty.map_or(0.0, |penalty| penalty(&self.place))
+    }
+
+    /// Whether a parameter is in reserve: the effect is told without it.
+    pub fn is_in_reserve(&self, key: &str) -> bool {
+        self.reserve.iter().any(|(k, _)| self.coordinates[*k].key == key)
     }
 
     /// Standard errors of the parameters from the covariance of the coordinates, by difference quotients of [`Self::decode`].

@@ -2,10 +2,17 @@
 //!
 //! Where most runs are followed to the end, the others are judged as far as they are followed, and that is said; where most are lost, it is
 //! the model that is wrong.
+//!
+//! And runs that a model could follow and does not: a touch on one side of an edge or on the other makes two runs of starts that no sensor tells
+//! apart, and a descent from one of them does not cross the edge. Starts are drawn from all that the part before it leaves possible.
 
 use crate::fit::{Effort, Fit};
-use crate::linear::{Segment, Stage};
+use crate::linear::{Segment, Stage, finite};
 use crate::plant::Built;
+use nalgebra::{DMatrix, DVector};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 /// Mean square from which on the start of a run is suspected to stand in a wrong valley.
@@ -23,6 +30,9 @@ const FIRST: f64 = 0.25;
 const PARTS: usize = 40;
 /// Times that a start is fitted to what it follows.
 const TURNS: usize = 3;
+
+/// Starts that are drawn for a run, each time that it is followed further.
+const DRAWN: usize = 64;
 
 /// Whether a stretch is near the model.
 pub(crate) fn is_near(stage: &Stage<'_>, built: &Built, segment: &Segment) -> bool {
@@ -82,6 +92,56 @@ fn followed_part(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segm
     }
     (is_near(stage, built, &now)).then_some(Segment { columns: None, ..now })
 }
+
+/// Whole runs with those that are lost begun from other starts, where some lead further that are as likely before the loss.
+pub(crate) fn scattered(stage: &Stage<'_>, built: &Built, runs: &[Segment]) -> Vec<Segment> {
+    let of = |run: &Segment| match is_near(stage, built, run) {
+        true => run.clone(),
+        false => drawn(stage, built, run).unwrap_or_else(|| run.clone()),
+    };
+    runs.par_iter().map(of).collect()
+}
+
+/// A run followed from part to part: where it is lost, on from the best of many starts that the part before leaves possible. None where none is near.
+fn drawn(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
+    let mut dice = ChaCha8Rng::seed_from_u64(run.run as u64);
+    let mut now = Segment { columns: None, ..run.clone() };
+    now.span.to = run.span.from + FIRST * (run.span.to - run.span.from);
+    now = stage.begun_anew(built, &[now], (Effort::STARTS, POOR_RUN)).pop()?;
+    for _ in 0..TURNS {
+        let end = followed_until(stage, built, &Segment { span: run.span, ..now.clone() });
+        if end <= run.span.from {
+            return None;
+        }
+        now.span.to = end;
+        now = stage.fit_starts(built, &[Segment { columns: None, ..now }], Effort::STARTS).pop()?.segment;
+        let known = now.columns.clone()?;
+        let spread = DMatrix::from_columns(&known.columns).svd(false, true);
+        let axes = spread.v_t.as_ref()?.transpose();
+        let largest = spread.singular_values.max();
+        // What the part does not show at all stays where it is.
+        let sizes = spread.singular_values.map(|s| if s > SHOWN * largest { 1.0 / s } else { 0.0 });
+        let draw = |dice: &mut ChaCha8Rng| {
+            let normal = |dice: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(dice) };
+            let by = DVector::from_fn(sizes.len(), |k, _| sizes[k] * normal(dice));
+            now.start.retract(&known.freedoms, (&axes * by).as_slice())
+        };
+        let mut starts = vec![now.start.clone()];
+        starts.extend((0..DRAWN).map(|_| draw(&mut dice)));
+        let whole = |start| Segment { start, span: run.span, columns: None, ..now.clone() };
+        let cost = |start: &crate::start::Start| finite(stage.residuals(built, &whole(start.clone())).norm_squared());
+        let costs: Vec<f64> = starts.par_iter().map(cost).collect();
+        let best = (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b]))?;
+        now = stage.fit_starts(built, &[whole(starts[best].clone())], Effort::STARTS).pop()?.segment;
+        if is_near(stage, built, &now) {
+            return Some(Segment { columns: None, ..now });
+        }
+    }
+    None
+}
+
+/// Share of what a part shows best that it has to show of something.
+const SHOWN: f64 = 1e-6;
 
 /// End of the last part of a run before the first that is lost, s.
 fn followed_until(stage: &Stage<'_>, built: &Built, run: &Segment) -> f64 {

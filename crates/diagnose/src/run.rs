@@ -368,7 +368,12 @@ fn seek(
     let located = locate(stage, plant, &nominal, places(&own_parts, window))?;
     clock.stage("search", 0.25);
     let Stretches { windows, rungs, whole } = stretches::choose(stage, plant, &nominal, window)?;
-    let whole = follow(stage, plant, EffectSet::default(), &whole)?;
+    let mut whole = follow(stage, plant, EffectSet::default(), &whole)?;
+    // Windows that are followed are no reason to doubt the model for runs that are not.
+    if lost::calc_share(stage, &whole) > 0.0 && lost::calc_poor_share(stage, &nominal) == 0.0 {
+        let runs = lost::scattered(stage, &whole.built, &whole.segments);
+        whole = fit(stage, plant, EffectSet::default(), runs, Effort::STARTS)?;
+    }
     let [short, long] = [nominal.rms(), whole.rms()];
     stage.work.watch.step(&format!("the nominal model: error {short:.3} in windows, {long:.3} over whole runs"));
     let standing = loosened(stage, plant, Standing::new(stage, windows, whole.clone(), rungs))?;

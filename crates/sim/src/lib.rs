@@ -53,8 +53,8 @@ pub use account::MomentumAudit;
 pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
 pub use drive::{Drive, DriveAxis, DrivePath, Motion};
 pub use effect::{
-    Appendage, Axes, BodyAction, BodyEffect, BodyLaw, BodyMotion, BodyPlace, DryLevel, Effect, EffectKind, JointEffect,
-    JointLaw, LineEffect, LineLaw, Load, MemorySlot, Series, Slosh, Sphere, memory_layout,
+    Appendage, Axes, BodyAction, BodyEffect, BodyLaw, BodyMotion, BodyPlace, DryFriction, DryLevel, Effect, EffectKind,
+    JointEffect, JointLaw, LineEffect, LineLaw, Load, MemorySlot, REACH, Series, Slosh, Sphere, memory_layout,
 };
 pub use energy::{Energy, EnergyAudit, EnergyBalance, Works};
 pub use environment::Environment;

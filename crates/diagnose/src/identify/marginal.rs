@@ -328,6 +328,11 @@ impl Spread {
         Self { local: self.local.iter().map(|own| own.iter().map(of).collect()).collect(), ..self.clone() }
     }
 
+    /// Intervals and channels whose noise has a factor of its own.
+    pub fn factors(&self) -> usize {
+        self.local.iter().flatten().map(|l| l.noise.iter().filter(|x| **x > 1.0).count()).sum()
+    }
+
     /// Root mean square of the unknown forces that are expected.
     pub fn usual_force(&self) -> DVector<f64> {
         let all = || self.local.iter().flatten();

@@ -206,8 +206,10 @@ pub struct Candidate {
     pub encoding: Encoding,
     /// Where it is screened.
     pub screens: Vec<ScreenPoint>,
-    /// Coordinates that no data of this kind can show; they stay at neutral.
+    /// Coordinates that no data of this kind can show, or that are in reserve; they stay at neutral.
     pub held: Vec<usize>,
+    /// Those of them that are freed where the law does not follow all of the motion without, and where a fit of them begins.
+    pub reserve: Vec<(usize, f64)>,
     /// Whether its screen is expensive: many points, or memory whose start is free too.
     pub is_expensive: bool,
 }
@@ -222,6 +224,7 @@ impl Candidate {
             encoding: Encoding::Direct,
             screens: Vec::new(),
             held: Vec::new(),
+            reserve: Vec::new(),
             is_expensive: false,
         }
     }
@@ -240,6 +243,13 @@ impl Candidate {
     /// The same with coordinates that stay at neutral.
     pub fn holding(mut self, held: Vec<usize>) -> Self {
         self.held = held;
+        self
+    }
+
+    /// The same with a coordinate that stays at neutral until the law does not follow all of the motion; `start`: where a fit of it begins then.
+    pub fn in_reserve(mut self, coordinate: usize, start: f64) -> Self {
+        self.held.push(coordinate);
+        self.reserve.push((coordinate, start));
         self
     }
 

@@ -1,15 +1,35 @@
 //! Dry friction of a joint, of Dahl's kind: one level, a level that falls with speed, or a level for each direction.
 //!
-//!   −(g/z₀)(z + t_d ż exp(−(q̇/v_d)²)),   ż = q̇ − |q̇| z/z₀,   z₀ = 3e-4 rad or m,  t_d = 2 ms,  v_d = 0.02 rad/s or m/s
+//!   −(g/z₀)(z + t_d ż exp(−(q̇/v_d)²)),   ż = q̇ − max(|q̇|, v_c) z/z₀,   t_d = 2 ms,  v_d = 0.02 rad/s or m/s
+//!
+//! A joint that does not quite hold creeps below v_c. A diagnosis frees that rate only where friction that holds does not follow all of the motion.
 
 use super::joint::{SMALL, each_screened};
 use super::*;
 use parameter::{AT_LEAST_ZERO, POSITIVE, shape, zero};
-use sim::{DryLevel, JointLaw};
-use unit::{EFFORT, RATE};
+use sim::{DryFriction, DryLevel, JointLaw, REACH};
+use unit::{EFFORT, PLACE, RATE};
 
 const SOURCE: &str = "Dahl 1968; falling levels after Stribeck, as in Armstrong-Hélouvry, Dupont and Canudas de Wit 1994; \
                       law in `crates/sim/src/effect/joint.rs`.";
+
+/// z₀.
+const Z_0: Parameter =
+    zero("z_0", POSITIVE, PLACE, "deflection before it slides; the level over it is the stiffness at rest")
+        .neutral_at(REACH)
+        .optional();
+/// v_c.
+const V_C: Parameter =
+    zero("v_c", AT_LEAST_ZERO, RATE, "rate below which the joint creeps under less than the level, in its share of it")
+        .optional();
+/// Rate from which creep is looked for, and the largest.
+const CREEP: f64 = 1e-3;
+const FASTEST: f64 = 0.1;
+
+/// Dry friction of an entry.
+fn dry(entry: &Entry<'_>, level: DryLevel) -> JointLaw {
+    JointLaw::Dry(DryFriction { level, reach: entry.number(Z_0.name), creep: entry.number(V_C.name) })
+}
 
 /// g = c.
 pub static JOINT_COULOMB_FRICTION: EffectDef = EffectDef {
@@ -17,13 +37,13 @@ pub static JOINT_COULOMB_FRICTION: EffectDef = EffectDef {
     meaning: "Dry friction of a joint.",
     words: "dry (Coulomb) friction",
     places: &[PlaceKind::Joint],
-    parameters: &[zero("c", AT_LEAST_ZERO, EFFORT, "level")],
-    equation: "−(c/z₀)(z + t_d ż exp(−(q̇/v_d)²)) with ż = q̇ − |q̇| z/z₀, z₀ = 3·10⁻⁴ rad or m, t_d = 2 ms and v_d = 0.02 rad/s or m/s: \
-               in motion in one direction −c sign q̇, at rest a spring.",
+    parameters: &[zero("c", AT_LEAST_ZERO, EFFORT, "level"), Z_0, V_C],
+    equation: "−(c/z₀)(z + t_d ż exp(−(q̇/v_d)²)) with ż = q̇ − max(|q̇|, v_c) z/z₀, t_d = 2 ms and v_d = 0.02 rad/s or m/s: \
+               in motion in one direction −c sign q̇, at rest a spring; below v_c a load moves the joint at v_c times its share of c.",
     source: SOURCE,
-    build: Build::Effort(|entry| JointLaw::Dry(DryLevel::Constant(entry.number("c")))),
+    build: Build::Effort(|entry| dry(entry, DryLevel::Constant(entry.number("c")))),
     identify: Identify {
-        candidates: Candidates::Joint(|joint, _| each_screened(joint, &["c"])),
+        candidates: Candidates::Joint(coulomb),
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
@@ -46,19 +66,21 @@ pub static JOINT_STRIBECK_FRICTION: EffectDef = EffectDef {
         zero("c", AT_LEAST_ZERO, EFFORT, "level in fast motion"),
         zero("s", AT_LEAST_ZERO, EFFORT, "level at rest"),
         shape("v_s", POSITIVE, RATE, "rate over which the level falls"),
+        Z_0,
+        V_C,
     ],
     equation: "As joint-coulomb-friction, with the level c + (s − c) exp(−(q̇/v_s)²) in the place of c.",
     source: SOURCE,
     build: Build::Effort(|entry| {
         let number = |name: &str| entry.number(name);
-        JointLaw::Dry(DryLevel::Falling { c: number("c"), s: number("s"), v_s: number("v_s") })
+        dry(entry, DryLevel::Falling { c: number("c"), s: number("s"), v_s: number("v_s") })
     }),
     identify: Identify {
         candidates: Candidates::Joint(stribeck),
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
-        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![x[0]])]),
+        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![x[0], 0.0])]),
         start: Start::Mean,
         minima: Minima::Several,
         concerns: Concerns::Motion,
@@ -76,19 +98,21 @@ pub static JOINT_FRICTION_ASYMMETRY: EffectDef = EffectDef {
     parameters: &[
         zero("c_plus", AT_LEAST_ZERO, EFFORT, "level where z ≥ 0: against motion in the positive direction"),
         zero("c_minus", AT_LEAST_ZERO, EFFORT, "level elsewhere"),
+        Z_0,
+        V_C,
     ],
     equation: "As joint-coulomb-friction, with the level c_plus where the deflection z ≥ 0 and c_minus elsewhere.",
     source: SOURCE,
     build: Build::Effort(|entry| {
         let level = DryLevel::Directed { c_plus: entry.number("c_plus"), c_minus: entry.number("c_minus") };
-        JointLaw::Dry(level)
+        dry(entry, level)
     }),
     identify: Identify {
         candidates: Candidates::Joint(|joint, _| each_screened(joint, &["c_plus", "c_minus"])),
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
-        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![0.5 * (x[0] + x[1])])]),
+        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![0.5 * (x[0] + x[1]), 0.0])]),
         start: Start::Mean,
         minima: Minima::One,
         concerns: Concerns::Motion,
@@ -96,6 +120,12 @@ pub static JOINT_FRICTION_ASYMMETRY: EffectDef = EffectDef {
     shown: Shown::Each,
     corrects: Corrects::Nothing,
 };
+
+fn coulomb(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
+    let coordinates = vec![Coordinate::level("c", 0.0), Coordinate::free("v_c", 0.0).within([0.0, FASTEST])];
+    let holding = Candidate::new(joint.place(), coordinates).in_reserve(1, CREEP);
+    vec![holding.screened(&[Along::new(0, SMALL)])]
+}
 
 fn stribeck(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
     let coordinates =

@@ -5,18 +5,24 @@
 //! | viscous | −b q̇, of one value or of two by the sign of q̇ |
 //! | quadratic | −b₂ |q̇| q̇ |
 //! | offset | e |
-//! | dry | −(g/z₀)(z + t_d ż e^(−(q̇/v_d)²)),  ż = q̇ − |q̇| z/z₀ |
+//! | dry | −(g/z₀)(z + t_d ż e^(−(q̇/v_d)²)),  ż = q̇ − max(|q̇|, v_c) z/z₀ |
 //! | ripple | A sin(n q + φ) |
 //! | cable | −k (q − q_rest) |
 //! | periodic | A sin(2π f t + φ) |
 //!
-//! Dry friction is Dahl's (1968), with z₀ = 3e-4 rad or m, t_d = 2 ms, v_d = 0.02 rad/s or m/s, and the level g constant,
-//! falling with speed, or of two values by the sign of z. Divided by q̇, its equation loses the time:
+//! Dry friction is Dahl's (1968), with t_d = 2 ms, v_d = 0.02 rad/s or m/s, and the level g constant, falling with speed, or
+//! of two values by the sign of z. Divided by q̇, its equation loses the time:
 //!   dz/dq = 1 − σ z/z₀,  σ = sign q̇,   so   z = σ z₀ + (z_a − σ z₀) e^(−|q − q_a|/z₀)   while the direction holds.
 //! The deflection of every stage is therefore taken from the displacement since the step's start, exactly; a reversal
 //! within the step is placed by a linear rate between its ends. Integrated as a rate, z would be stiff (|q̇|/z₀ is
 //! 3,000 /s at 1 rad/s); so it is bounded at any step, and the law is as smooth in q as the motion lets it be. What is
 //! left is the corner at a reversal: a step of Runge–Kutta that holds one is divided, see [`REVERSAL_STEP`].
+//!
+//! Below the creep rate v_c the joint does not hold: a load of less than the level moves it, at v_c times its share of the level
+//! (lubricant films, teeth under load; the regularised Coulomb friction of other simulators). z then relaxes with the time z₀/v_c
+//! towards z₀ q̇/v_c. Over a time t at a steady rate both cases are one,
+//!   z = z₀ Δq/m + (z_a − z₀ Δq/m) e^(−m/z₀),   m = max(|Δq|, v_c t),
+//! and v_c = 0 is Dahl's law.
 
 use crate::actuator::CoordinatePoint;
 use std::f64::consts::TAU;
@@ -56,7 +62,7 @@ pub enum JointLaw {
         effort: f64,
     },
     /// Dahl's dry friction.
-    Dry(DryLevel),
+    Dry(DryFriction),
     /// Periodic in the position.
     Ripple {
         /// N·m or N.
@@ -84,6 +90,24 @@ pub enum JointLaw {
     },
 }
 
+/// Dry friction with a deflection before it slides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DryFriction {
+    /// g: how high it is.
+    pub level: DryLevel,
+    /// z₀: deflection at which it is fully there, rad or m, above zero; the level over z₀ is its stiffness at rest.
+    pub reach: f64,
+    /// v_c: rate below which it yields slowly instead of holding, rad/s or m/s; zero where it holds.
+    pub creep: f64,
+}
+
+impl From<DryLevel> for DryFriction {
+    /// With the usual reach, and without creep.
+    fn from(level: DryLevel) -> Self {
+        Self { level, reach: REACH, creep: 0.0 }
+    }
+}
+
 /// How high dry friction is, N·m or N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DryLevel {
@@ -107,8 +131,8 @@ pub enum DryLevel {
     },
 }
 
-/// z₀: deflection at which dry friction is fully there, rad or m.
-const REACH: f64 = 3e-4;
+/// z₀ where nothing else is known, rad or m.
+pub const REACH: f64 = 3e-4;
 /// t_d: time constant of the damping of small motion, s.
 const DAMPING_TIME: f64 = 2e-3;
 /// v_d: rate beyond which that damping fades, rad/s or m/s.
@@ -146,32 +170,37 @@ impl DryLevel {
             }
         }
     }
+}
 
+impl DryFriction {
     /// Effort and −∂effort/∂v' at the deflection z; β and θ say how z and v depend on the new rate v'.
     fn eval(&self, z: f64, v: f64, beta: f64, theta: f64) -> (f64, f64) {
         let fade = DAMPING_TIME * (-(v / DAMPING_RATE) * (v / DAMPING_RATE)).exp();
-        let stiffness = self.calc(z, v) / REACH;
-        let open = 1.0 - v.signum() * z / REACH;
-        (-stiffness * (z + fade * v * open), (stiffness * open * (beta + fade * theta)).max(0.0))
+        let stiffness = self.level.calc(z, v) / self.reach;
+        let creeps = v.abs() < self.creep;
+        let open = if creeps { 1.0 } else { 1.0 - v.signum() * z / self.reach };
+        let rate = if creeps { v - self.creep * z / self.reach } else { v * open };
+        (-stiffness * (z + fade * rate), (stiffness * open * (beta + fade * theta)).max(0.0))
     }
-}
 
-/// Deflection after the displacement of a law's point from the start of the step, where it was `z`.
-fn calc_deflection(z: f64, at: &CoordinatePoint, moved: f64, v: f64) -> f64 {
-    if let Some((v_start, elapsed)) = at.from
-        && v_start * v < 0.0
-    {
-        // The rate goes linearly through zero: so far out, and the rest of the way back.
-        let out = 0.5 * v_start * elapsed * (v_start / (v_start - v));
-        return drag(drag(z, out), moved - out);
+    /// Deflection after the displacement of a law's point from the start of the step, where it was `z`.
+    fn calc_deflection(&self, z: f64, at: &CoordinatePoint, moved: f64, v: f64) -> f64 {
+        let Some((v_start, elapsed)) = at.from else { return self.drag(z, moved, at.elapsed) };
+        if v_start * v < 0.0 {
+            // The rate goes linearly through zero: so far out, and the rest of the way back.
+            let share = v_start / (v_start - v);
+            let out = 0.5 * v_start * elapsed * share;
+            return self.drag(self.drag(z, out, elapsed * share), moved - out, elapsed * (1.0 - share));
+        }
+        self.drag(z, moved, elapsed)
     }
-    drag(z, moved)
-}
 
-/// Deflection after a displacement in one direction.
-fn drag(z: f64, moved: f64) -> f64 {
-    let end = REACH.copysign(moved);
-    end + (z - end) * (-moved.abs() / REACH).exp()
+    /// Deflection after a displacement in one direction, in a time.
+    fn drag(&self, z: f64, moved: f64, time: f64) -> f64 {
+        let (way, crept) = (moved.abs(), self.creep * time);
+        let end = if crept > way { self.reach * moved / crept } else { self.reach.copysign(moved) };
+        end + (z - end) * (-way.max(crept) / self.reach).exp()
+    }
 }
 
 impl JointEffect {
@@ -209,9 +238,9 @@ impl JointEffect {
             }
             JointLaw::Quadratic { drag } => (-drag * v.abs() * v, 2.0 * drag * v.abs() * at.theta),
             JointLaw::Offset { effort } => (effort, 0.0),
-            JointLaw::Dry(level) => {
-                let z = calc_deflection(memory[0], at, at.moved_base + at.beta * v_new, v);
-                level.eval(z, v, at.beta, at.theta)
+            JointLaw::Dry(dry) => {
+                let z = dry.calc_deflection(memory[0], at, at.moved_base + at.beta * v_new, v);
+                dry.eval(z, v, at.beta, at.theta)
             }
             JointLaw::Ripple { amplitude, order, phase } => {
                 let (sin, cos) = (order * q + phase).sin_cos();
@@ -227,13 +256,13 @@ impl JointEffect {
 
     /// Whether it is dry friction.
     pub(super) fn is_dry(&self) -> bool {
-        matches!(self.law, JointLaw::Dry(level) if !level.is_nothing())
+        matches!(self.law, JointLaw::Dry(dry) if !dry.level.is_nothing())
     }
 
     /// Takes the deflection over the accepted step.
     pub(super) fn commit(&self, at: &CoordinatePoint, v: f64, memory: &mut [f64]) {
-        if let [z] = memory {
-            *z = calc_deflection(*z, at, at.moved_base, v);
+        if let ([z], JointLaw::Dry(dry)) = (memory, &self.law) {
+            *z = dry.calc_deflection(*z, at, at.moved_base, v);
         }
     }
 

@@ -22,7 +22,7 @@ mod memory;
 mod series;
 
 pub use body::{Appendage, Axes, BodyAction, BodyEffect, BodyLaw, BodyMotion, BodyPlace, Load, Slosh, Sphere};
-pub use joint::{DryLevel, JointEffect, JointLaw};
+pub use joint::{DryFriction, DryLevel, JointEffect, JointLaw, REACH};
 pub use line::{LineEffect, LineLaw};
 pub use memory::{MemorySlot, memory_layout};
 pub use series::Series;

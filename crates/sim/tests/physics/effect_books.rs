@@ -11,9 +11,9 @@ fn beside(x: f64) -> Vec<EffectKind> {
     let line = |law| EffectKind::Line(LineEffect { actuator: 0, law });
     vec![
         on_joint(JointLaw::Viscous { damping: x }),
-        on_joint(JointLaw::Dry(DryLevel::Constant(x))),
-        on_joint(JointLaw::Dry(DryLevel::Falling { c: 0.0, s: x, v_s: 0.05 })),
-        on_joint(JointLaw::Dry(DryLevel::Directed { c_plus: x, c_minus: 0.0 })),
+        on_joint(JointLaw::Dry(DryLevel::Constant(x).into())),
+        on_joint(JointLaw::Dry(DryLevel::Falling { c: 0.0, s: x, v_s: 0.05 }.into())),
+        on_joint(JointLaw::Dry(DryLevel::Directed { c_plus: x, c_minus: 0.0 }.into())),
         on_joint(JointLaw::ViscousBySide { plus: x, minus: 0.0 }),
         on_joint(JointLaw::Quadratic { drag: x }),
         on_joint(JointLaw::Offset { effort: x }),
@@ -61,7 +61,7 @@ fn rich() -> Vec<EffectKind> {
     let line = |law| EffectKind::Line(LineEffect { actuator: 0, law });
     vec![
         on_joint(JointLaw::Viscous { damping: 0.1 }),
-        on_joint(JointLaw::Dry(DryLevel::Falling { c: 0.2, s: 0.3, v_s: 0.05 })),
+        on_joint(JointLaw::Dry(DryLevel::Falling { c: 0.2, s: 0.3, v_s: 0.05 }.into())),
         on_joint(JointLaw::Ripple { amplitude: 0.1, order: 3.0, phase: 0.2 }),
         on_joint(JointLaw::Cable { stiffness: 0.5, rest: 0.3 }),
         EffectKind::Series(Series { coordinate: 0, rotor: 0.2, stiffness: 4_000.0, damping: 3.0, gap: 1e-3 }),

@@ -21,7 +21,8 @@ fn viscous_friction_slows_a_wheel_exponentially() {
 #[test]
 fn sliding_wheel_loses_c_over_i_per_second_and_sticks() {
     for integrator in ALL {
-        let mut world = wheel_world(&[on_joint(JointLaw::Dry(DryLevel::Constant(0.8)))], &Setup::new(integrator));
+        let mut world =
+            wheel_world(&[on_joint(JointLaw::Dry(DryLevel::Constant(0.8).into()))], &Setup::new(integrator));
         world.state_mut().v[0] = 1.0;
         run(&mut world, 100);
         let (v, t) = (world.state().v[0], world.state().time);
@@ -38,7 +39,7 @@ fn sliding_wheel_loses_c_over_i_per_second_and_sticks() {
 fn reversing(level: DryLevel, integrator: Integrator, step: f64) -> World {
     let periodic = JointLaw::Periodic { amplitude: 3.0, frequency: 1.5, phase: 0.3 };
     let mut world =
-        wheel_world(&[on_joint(JointLaw::Dry(level)), on_joint(periodic)], &Setup::new(integrator).step(step));
+        wheel_world(&[on_joint(JointLaw::Dry(level.into())), on_joint(periodic)], &Setup::new(integrator).step(step));
     run(&mut world, (2.0 / step).round() as usize);
     world
 }
@@ -66,7 +67,8 @@ fn dry_friction_through_reversals_is_accurate_at_a_millisecond() {
 #[test]
 fn levels_of_dry_friction_are_those_of_speed_and_direction() {
     let slope = |level: DryLevel, v: f64| {
-        let mut world = wheel_world(&[on_joint(JointLaw::Dry(level))], &Setup::new(Integrator::RungeKutta4).step(1e-4));
+        let mut world =
+            wheel_world(&[on_joint(JointLaw::Dry(level.into()))], &Setup::new(Integrator::RungeKutta4).step(1e-4));
         world.state_mut().v[0] = v;
         world.state_mut().effects[0] = 3e-4 * v.signum();
         run(&mut world, 1);
@@ -103,7 +105,7 @@ fn small_motion_about_a_rest_deflection_is_damped_by_its_micro_damping() {
     // I ẍ = −(c/z₀)(x + 0.002 ẋ) about z = 0: ω = √(c/(z₀ I)) = 73 rad/s, damping ratio ω/2 · 2 ms = 0.073. Dahl's own
     // loss at |z| ≪ z₀ is small beside it.
     let mut world = wheel_world(
-        &[on_joint(JointLaw::Dry(DryLevel::Constant(0.8)))],
+        &[on_joint(JointLaw::Dry(DryLevel::Constant(0.8).into()))],
         &Setup::new(Integrator::RungeKutta4).step(1e-4),
     );
     let omega = (0.8_f64 / 3e-4 / INERTIA).sqrt();

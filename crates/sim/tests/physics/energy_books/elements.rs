@@ -112,7 +112,7 @@ fn joints() -> Vec<Element> {
     let of = |name, build| swung(smooth(name, Force::Wheel, build, [1.0, 1e-3]));
     let corner = |name, build, step| swung(cornered(name, Force::Wheel, build, [0.5, step]));
     let stopped = |s: &Setup| wheel_of(&[], |j| j.position_limits = Some([-0.1, 0.12]), s);
-    let dry = |s: &Setup| wheel_with(JointLaw::Dry(DryLevel::Constant(0.3)), s);
+    let dry = |s: &Setup| wheel_with(JointLaw::Dry(DryLevel::Constant(0.3).into()), s);
     vec![
         Element { force: Force::Hidden, duration: 0.5, step: 2e-4, ..of("joint drives", driven_arm) },
         of("joint damping", |s| wheel_of(&[], |j| j.damping = 0.4, s)),
