@@ -90,8 +90,11 @@ pub(crate) fn plainer(
     let of = |other: Alternative| {
         let is_here = |p: &&Hypothesis| p.name == other.name && (p.place == h.place || other.is_at_contact);
         let plain = known.iter().find(is_here)?;
+        // What a law has had to free its plainer form has free too.
+        let free = plain.relaxed(&other.coordinates).filter(|_| h.reserve.is_empty());
+        let plain = free.map_or_else(|| plain.clone(), |(free, _)| free);
         let held = [&plain.held[..], &other.held[..]].concat();
-        Some((Hypothesis { held, ..plain.clone() }, other.coordinates))
+        Some((Hypothesis { held, ..plain }, other.coordinates))
     };
     others.into_iter().filter_map(of).filter(|(plain, _)| !set.has_finding(plain)).collect()
 }

@@ -54,8 +54,10 @@ pub struct Fitted {
     pub first: DVector<f64>,
     /// Spread of forces and noise.
     pub spread: Spread,
-    /// −2 log of the marginal likelihood and of the numbers' priors.
+    /// −2 log of the marginal likelihood and of the numbers' priors, less the datum.
     pub score: f64,
+    /// What the same fit on halved intervals has more of it than on those that a search began with: scores are told as of these.
+    pub datum: f64,
     /// Part of it that residuals make.
     pub cost: f64,
     /// Residuals.
@@ -81,6 +83,8 @@ pub struct Reach {
 /// Intervals of a run, and samples of its sparsest reading that each has.
 const KNOTS: std::ops::RangeInclusive<usize> = 24..=48;
 const SAMPLES: usize = 12;
+/// How many times as many a run has where a replay leaves the range of numbers, one after the other.
+const SHORTER: [usize; 3] = [1, 2, 4];
 /// Promised fall of −2 log likelihood below which a fit has converged.
 const CONVERGED: f64 = 0.3;
 /// Most times that a step is shortened, to the half, an eighth, a sixty-fourth …; what is left of it each time is this to the power of the time.
@@ -104,6 +108,13 @@ const WRONG: f64 = 4.0;
 const UNKNOWN: f64 = 1e4;
 /// Largest prior standard deviation of a first state's coordinate, its own unit.
 const LARGEST: f64 = 1.0;
+
+impl Fitted {
+    /// Intervals of all runs.
+    pub fn intervals(&self) -> usize {
+        self.tracks.iter().map(|t| t.intervals.len()).sum()
+    }
+}
 
 impl<'a> Problem<'a> {
     /// Some runs of a scenario.
@@ -149,17 +160,30 @@ impl<'a> Problem<'a> {
         self.refined(self.begun()?)
     }
 
-    /// The same with intervals of one length.
+    /// The same with intervals of one length, shorter ones where a replay leaves the range of numbers before its samples correct it.
     fn begun(&self) -> Result<Fitted, DiagnoseError> {
-        if self.runs.is_empty() {
-            return Err(self.lost());
+        let mut begun = Err(self.lost());
+        for knots in SHORTER.iter().map(|times| times * self.knots) {
+            begun = self.begun_in(knots);
+            if self.runs.is_empty() || begun.is_ok() {
+                break;
+            }
         }
+        begun
+    }
+
+    /// The same with so many intervals of each run.
+    fn begun_in(&self, knots: usize) -> Result<Fitted, DiagnoseError> {
         let set = EffectSet::default();
         let built = self.plant.build(&[])?;
-        let tracks: Vec<Track> = self.runs.par_iter().map(|r| self.cut(&built, *r)).collect::<Result<_, _>>()?;
+        let tracks: Vec<Track> =
+            self.runs.par_iter().map(|r| self.cut(&built, (*r, knots))).collect::<Result<_, _>>()?;
+        if tracks.is_empty() {
+            return Err(self.lost());
+        }
         let freedoms = coordinates(&built, &tracks[0].intervals[0].start);
         let frame = Frame { stage: &self.stage, built: &built, freedoms: &freedoms, forces: &self.forces };
-        let typical = frame.link(tracks[0].run, &tracks[0].intervals[self.knots / 2]).ok_or_else(|| self.lost())?;
+        let typical = frame.link(tracks[0].run, &tracks[0].intervals[knots / 2]).ok_or_else(|| self.lost())?;
         let step = |w: &[super::track::Interval]| DVector::from_vec(w[1].start.difference(&w[0].start, &freedoms));
         let steps: Vec<DVector<f64>> = tracks.iter().flat_map(|t| t.intervals.windows(2).map(step)).collect();
         let force = first_spread(&freedoms, &steps, &typical.b);
@@ -176,6 +200,7 @@ impl<'a> Problem<'a> {
             first,
             spread,
             score: f64::INFINITY,
+            datum: 0.0,
             cost: f64::INFINITY,
             count: 0,
             covariance: DMatrix::zeros(0, 0),
@@ -185,12 +210,12 @@ impl<'a> Problem<'a> {
         self.settle(none, SETTLING, false)
     }
 
-    fn cut(&self, built: &Built, run: usize) -> Result<Track, DiagnoseError> {
-        Track::cut(&self.stage, (built, self.forces.len()), run, self.knots)
+    fn cut(&self, built: &Built, (run, knots): (usize, usize)) -> Result<Track, DiagnoseError> {
+        Track::cut(&self.stage, (built, self.forces.len()), run, knots)
     }
 
-    /// The same with intervals halved in which the missing force does not stay what it is, as far as there are samples for it.
-    fn refined(&self, mut now: Fitted) -> Result<Fitted, DiagnoseError> {
+    /// A fit with intervals halved in which the missing force does not stay what it is, as far as there are samples for it.
+    pub fn refined(&self, mut now: Fitted) -> Result<Fitted, DiagnoseError> {
         for _ in 0..HALVED {
             let frame = self.frame(&now);
             let bases: Option<Vec<Vec<Base>>> = now.tracks.par_iter().map(|t| frame.exact(t)).collect();
@@ -246,6 +271,16 @@ impl<'a> Problem<'a> {
         self.settle(now, SETTLING, true)
     }
 
+    /// A fit on the intervals of another one, its numbers as they are; that is what its score is compared by from there on.
+    pub fn onto_intervals(&self, of: &Fitted, intervals: &Fitted) -> Result<Fitted, DiagnoseError> {
+        let mut now = self.with(intervals, of.set.clone())?;
+        now.spread = Spread { local: Vec::new(), ..of.spread.clone() };
+        (now.links, now.datum) = (Vec::new(), of.datum);
+        self.follow(&mut now)?;
+        let now = self.settle(now, SETTLING, false)?;
+        Ok(Fitted { datum: of.datum + now.score - of.score, score: of.score, ..now })
+    }
+
     pub(crate) fn lost(&self) -> DiagnoseError {
         let file = self.runs.first().map_or_else(String::new, |r| self.stage.tapes[*r].file.clone());
         DiagnoseError::Replay {
@@ -263,7 +298,7 @@ impl<'a> Problem<'a> {
             let found = estimate(&chains, None, &now.spread.without_local_noise(), steps);
             let before = now.score;
             (now.spread, now.score, now.cost, now.count) = (found.spread.clone(), found.score, found.cost, made.count);
-            now.score += now.set.prior_cost();
+            now.score += now.set.prior_cost() - now.datum;
             now.tracks = self.moved(&now, &chains, &found);
             if (before - now.score).abs() < CONVERGED {
                 break;
@@ -311,7 +346,7 @@ impl<'a> Problem<'a> {
             // Which intervals are not followed is another question each time.
             let before_it = now.spread.without_local_noise();
             let here = estimate(&made.chains(&[]), None, &before_it, if iteration == 0 { STEPS[0] } else { STEPS[1] });
-            let score = here.score + now.set.prior_cost();
+            let score = here.score + now.set.prior_cost() - now.datum;
             if let Some(last) = before.as_ref().filter(|b| score.is_nan() || score > b.score + CONVERGED) {
                 if halved >= HALVINGS {
                     return Ok(Fitted { converged: false, ..last.clone() });
@@ -326,7 +361,7 @@ impl<'a> Problem<'a> {
             now.spread = here.spread.clone();
             now.covariance = found.covariance.clone();
             sizes = next_sizes(&now.set, &slots, &found.covariance);
-            let promised = score - found.score;
+            let promised = score + now.datum - found.score;
             now.converged = promised < CONVERGED;
             if now.converged || iteration + 1 == reach.iterations {
                 break;
@@ -346,9 +381,14 @@ impl<'a> Problem<'a> {
     /// The runs of another fit followed by a model: with the derivatives that are known, and with its own where those lead astray.
     fn followed(&self, from: &Fitted, with: Fitted) -> Result<Fitted, DiagnoseError> {
         let mut now = with.clone();
+        let is_there =
+            self.linearise(&mut now, &[], true).map(|made| self.score_of(&made, &now) < from.score + CONVERGED);
+        if is_there.unwrap_or(false) {
+            return Ok(now);
+        }
         let is_near = self.follow(&mut now).and_then(|()| {
             let made = self.linearise(&mut now, &[], true)?;
-            Ok(score(&made.chains(&[]), &now.spread) < from.score + ASTRAY * from.count as f64)
+            Ok(self.score_of(&made, &now) < from.score + ASTRAY * from.count as f64)
         });
         if is_near.unwrap_or(false) {
             return Ok(now);
@@ -356,6 +396,11 @@ impl<'a> Problem<'a> {
         now = Fitted { links: Vec::new(), ..with };
         self.follow(&mut now)?;
         Ok(now)
+    }
+
+    /// −2 log likelihood of a fit as it stands.
+    fn score_of(&self, made: &Made, of: &Fitted) -> f64 {
+        score(&made.chains(&[]), &of.spread) + of.set.prior_cost() - of.datum
     }
 
     /// Lets the runs be followed by another model than that which their states are of: what pushed them, pushes it no more or more.

@@ -4,7 +4,7 @@
 //!
 //! A joint that does not quite hold creeps below v_c. A diagnosis frees that rate only where friction that holds does not follow all of the motion.
 
-use super::joint::{SMALL, each_screened};
+use super::joint::SMALL;
 use super::*;
 use parameter::{AT_LEAST_ZERO, POSITIVE, shape, zero};
 use sim::{DryFriction, DryLevel, JointLaw, REACH};
@@ -80,7 +80,7 @@ pub static JOINT_STRIBECK_FRICTION: EffectDef = EffectDef {
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
-        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![x[0], 0.0])]),
+        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![x[0], x[3]])]),
         start: Start::Mean,
         minima: Minima::Several,
         concerns: Concerns::Motion,
@@ -108,11 +108,11 @@ pub static JOINT_FRICTION_ASYMMETRY: EffectDef = EffectDef {
         dry(entry, level)
     }),
     identify: Identify {
-        candidates: Candidates::Joint(|joint, _| each_screened(joint, &["c_plus", "c_minus"])),
+        candidates: Candidates::Joint(by_side),
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
-        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![0.5 * (x[0] + x[1]), 0.0])]),
+        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![0.5 * (x[0] + x[1]), x[2]])]),
         start: Start::Mean,
         minima: Minima::One,
         concerns: Concerns::Motion,
@@ -121,15 +121,25 @@ pub static JOINT_FRICTION_ASYMMETRY: EffectDef = EffectDef {
     corrects: Corrects::Nothing,
 };
 
+/// The creep rate, none, as the last of some coordinates.
+fn creeping(mut coordinates: Vec<Coordinate>, joint: &JointFact) -> Candidate {
+    coordinates.push(Coordinate::free(V_C.name, 0.0).within([0.0, FASTEST]));
+    let last = coordinates.len() - 1;
+    Candidate::new(joint.place(), coordinates).in_reserve(last, CREEP)
+}
+
 fn coulomb(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
-    let coordinates = vec![Coordinate::level("c", 0.0), Coordinate::free("v_c", 0.0).within([0.0, FASTEST])];
-    let holding = Candidate::new(joint.place(), coordinates).in_reserve(1, CREEP);
-    vec![holding.screened(&[Along::new(0, SMALL)])]
+    vec![creeping(vec![Coordinate::level("c", 0.0)], joint).screened(&[Along::new(0, SMALL)])]
+}
+
+fn by_side(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
+    let levels = ["c_plus", "c_minus"].map(|key| Coordinate::level(key, 0.0));
+    vec![creeping(levels.to_vec(), joint).screened(&Along::each(0..2, SMALL))]
 }
 
 fn stribeck(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
     let coordinates =
         vec![Coordinate::level("c", 0.0), Coordinate::level("s", 0.0), Coordinate::log("v_s", 0.05, [1e-3, 3.0])];
-    let falling = Candidate::new(joint.place(), coordinates).encoded(Encoding::Excess { of: 1, over: 0 });
+    let falling = creeping(coordinates, joint).encoded(Encoding::Excess { of: 1, over: 0 });
     vec![falling.screened_on(2, &[0.02, 0.08, 0.3], &Along::each(0..2, SMALL))]
 }
