@@ -2,11 +2,12 @@
 
 use crate::diagnosis::{Diagnosis, Verdict};
 
-/// Whether a likelihood of samples is to be believed: all is explained, or what is left is of the size of noise. Far beyond it the laws that were found are off by
+/// Whether a likelihood of samples is to be believed: all is explained or next to all, or what is left is of the size of noise. Far beyond it the laws that were found are off by
 /// more than noise at every sample, and what is likeliest sample by sample is decided by where they are off most.
 pub(crate) fn is_near_noise(diagnosis: &Diagnosis) -> bool {
     let has_effects = !diagnosis.effects.is_empty();
-    merit(diagnosis) >= 1.0 || has_effects && diagnosis.error.windowed.after < NEAR_NOISE
+    let is_next_to_all = diagnosis.explained_share.as_ref().is_some_and(|e| e.share >= NEXT_TO_ALL);
+    merit(diagnosis) >= 1.0 || has_effects && (diagnosis.error.windowed.after < NEAR_NOISE || is_next_to_all)
 }
 
 /// Whether a diagnosis explains more than another one by more than the runs tell exactly.
@@ -18,6 +19,8 @@ pub(crate) fn is_clearly_better(one: &Diagnosis, other: &Diagnosis) -> bool {
 
 /// Error over windows, units of noise, up to which what is left is of the size of noise.
 const NEAR_NOISE: f64 = 10.0;
+/// Share of a mismatch of which next to nothing is left: a thirtieth of the error.
+const NEXT_TO_ALL: f64 = 0.999;
 
 /// How much of the mismatch is explained: all, a share (of windows, which may be told to the last while whole runs are not), or nothing.
 pub(crate) fn merit(diagnosis: &Diagnosis) -> f64 {

@@ -381,8 +381,9 @@ impl<'a> Problem<'a> {
     /// The runs of another fit followed by a model: with the derivatives that are known, and with its own where those lead astray.
     fn followed(&self, from: &Fitted, with: Fitted) -> Result<Fitted, DiagnoseError> {
         let mut now = with.clone();
-        let is_there =
-            self.linearise(&mut now, &[], true).map(|made| self.score_of(&made, &now) < from.score + CONVERGED);
+        let is_there = self
+            .linearise(&mut now, &[], true)
+            .map(|made| self.score_of(&made, &now) < from.score + THERE * from.count as f64);
         if is_there.unwrap_or(false) {
             return Ok(now);
         }
@@ -544,8 +545,9 @@ fn is_joined(run: &Linear) -> bool {
     run.sides.iter().zip(&run.links[1..]).all(step)
 }
 
-/// Rise of −2 log likelihood by residual with which derivatives have led astray.
+/// Rise of −2 log likelihood by residual with which derivatives have led astray, and up to which a model is where the runs are already.
 const ASTRAY: f64 = 0.1;
+const THERE: f64 = 1e-3;
 
 /// All runs made linear.
 pub struct Made {
