@@ -194,7 +194,7 @@ impl CoordinatePoint {
     /// The end of a step that moved the coordinate by `moved`, whose laws were last evaluated at `last`.
     pub fn at_end(moved: f64, last: &Self, step: f64) -> Self {
         let from = last.from.map(|(v, _)| (v, step));
-        Self { moved_base: moved, beta: 0.0, theta: 0.0, from, ..*last }
+        Self { moved_base: moved, beta: 0.0, theta: 0.0, elapsed: step, from, ..*last }
     }
 }
 

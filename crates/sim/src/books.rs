@@ -163,8 +163,9 @@ impl Passage {
         let moved = state.q[coordinate.q_index] - start;
         let (q, rate) = (start + 0.5 * moved, moved / h);
         let last = &ws.coordinate_points[i];
+        let half = CoordinatePoint { elapsed: 0.5 * h, ..*last };
         let point =
-            CoordinatePoint { q_base: q, moved_base: 0.5 * moved, v_start: rate, beta: 0.0, theta: 0.0, ..*last };
+            CoordinatePoint { q_base: q, moved_base: 0.5 * moved, v_start: rate, beta: 0.0, theta: 0.0, ..half };
         let gear = coordinate.series.map_or([0.0; 2], |index| {
             let at = model.effects.memory(index).start;
             let [from, to] = [ws.effects_start[at], state.effects[at]];

@@ -3,7 +3,7 @@
 use crate::support::effects::{INERTIA, on_joint, wheel_spec, wheel_world};
 use crate::support::{ALL, Setup, arm7, free_world, run, world};
 use multibody::{Accelerations, Drive, Dynamics, Kinematics};
-use sim::{DryLevel, Energy, Integrator, JointLaw, MomentumAudit, World};
+use sim::{DryFriction, DryLevel, Energy, Integrator, JointLaw, MomentumAudit, World};
 use spatial::{Pose, Twist, Wrench};
 
 #[test]
@@ -121,6 +121,43 @@ fn small_motion_about_a_rest_deflection_is_damped_by_its_micro_damping() {
     // Second positive peak, at five quarters of a period.
     let expected = 1e-7 * (-zeta * omega * 1.25 * period).exp() * (zeta * zeta).exp();
     assert!((peak / expected - 1.0).abs() < 0.02, "{peak:.3e} against {expected:.3e}");
+}
+
+#[test]
+fn below_its_creep_rate_dry_friction_is_a_damper_behind_a_spring() {
+    // Under a load τ < c the joint creeps at v_c τ/c; where it holds, the deflection is z₀ τ/c and stays. Damped: 2 ms.
+    let (c, load, creep) = (0.8, 0.5, 4e-3);
+    for integrator in ALL {
+        for reach in [3e-4, 1e-3] {
+            let at = |creep| {
+                let dry = JointLaw::Dry(DryFriction { level: DryLevel::Constant(c), reach, creep });
+                let laws = [on_joint(dry), on_joint(JointLaw::Offset { effort: load })];
+                let mut world = wheel_world(&laws, &Setup::new(integrator).step(5e-4));
+                // Twenty times z₀/v_c.
+                run(&mut world, 30_000);
+                (world.state().v[0], world.state().effects[0])
+            };
+            let (v, z) = at(creep);
+            assert!((v / (creep * load / c) - 1.0).abs() < 1e-6, "{integrator:?}: creeps at {v}");
+            assert!((z / (reach * load / c) - 1.0).abs() < 1e-6, "{integrator:?}: deflected by {z}");
+            let (v, z) = at(0.0);
+            assert!(v.abs() < 1e-4 * creep, "{integrator:?}: holds at {v}");
+            assert!((z / (reach * load / c) - 1.0).abs() < 1e-3, "{integrator:?}: deflected by {z}");
+        }
+    }
+}
+
+#[test]
+fn friction_that_creeps_is_dahls_above_the_creep_rate() {
+    let after = |creep| {
+        let dry = JointLaw::Dry(DryFriction { level: DryLevel::Constant(0.8), reach: 3e-4, creep });
+        let mut world = wheel_world(&[on_joint(dry)], &Setup::new(Integrator::RungeKutta4));
+        world.state_mut().v[0] = 2.0;
+        run(&mut world, 300);
+        assert!(world.state().v[0] > 0.5);
+        world.state().q[0]
+    };
+    assert_eq!(after(0.0).to_bits(), after(0.1).to_bits());
 }
 
 #[test]
