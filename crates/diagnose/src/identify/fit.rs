@@ -157,7 +157,7 @@ impl<'a> Problem<'a> {
 
     /// The nominal model along all runs.
     pub fn begin(&self) -> Result<Fitted, DiagnoseError> {
-        self.refined(self.begun()?)
+        self.refined(self.begun()?, true)
     }
 
     /// The same with intervals of one length, shorter ones where a replay leaves the range of numbers before its samples correct it.
@@ -215,7 +215,8 @@ impl<'a> Problem<'a> {
     }
 
     /// A fit with intervals halved in which the missing force does not stay what it is, as far as there are samples for it.
-    pub fn refined(&self, mut now: Fitted) -> Result<Fitted, DiagnoseError> {
+    /// `reuse`: derivatives of the others stay what they are.
+    pub fn refined(&self, mut now: Fitted, reuse: bool) -> Result<Fitted, DiagnoseError> {
         for _ in 0..HALVED {
             let frame = self.frame(&now);
             let bases: Option<Vec<Vec<Base>>> = now.tracks.par_iter().map(|t| frame.exact(t)).collect();
@@ -225,8 +226,12 @@ impl<'a> Problem<'a> {
             }
             let tracks: Vec<Track> =
                 now.tracks.par_iter().zip(&which).map(|(t, w)| frame.halved(t, w)).collect::<Result<_, _>>()?;
+            let known = if reuse { &now.links[..] } else { &[] };
+            let pairs = now.tracks.par_iter().zip(known).zip(&tracks);
+            let links = pairs.map(|((before, links), after)| frame.links_again((before, links), after).map(Arc::new));
+            let links: Option<Vec<Arc<Vec<Link>>>> = links.collect();
             now.spread.local.clear();
-            now = self.settle(Fitted { tracks, links: Vec::new(), ..now }, SETTLING, false)?;
+            now = self.settle(Fitted { tracks, links: links.unwrap_or_default(), ..now }, SETTLING, reuse)?;
         }
         Ok(now)
     }

@@ -315,6 +315,17 @@ impl Frame<'_> {
         track.intervals.par_iter().map(|interval| self.link(track.run, interval)).collect()
     }
 
+    /// The same of a run some intervals of which are new: of the others they are known.
+    pub fn links_again(&self, (before, known): (&Track, &[Link]), track: &Track) -> Option<Vec<Link>> {
+        let of = |interval: &Interval| {
+            let at = before.intervals.partition_point(|b| b.span.from < interval.span.from - SAME);
+            let same = before.intervals.get(at).zip(known.get(at));
+            let same = same.filter(|(b, _)| b.span == interval.span && b.members == interval.members);
+            same.map_or_else(|| self.link(track.run, interval), |(_, link)| Some(link.clone()))
+        };
+        track.intervals.par_iter().map(of).collect()
+    }
+
     /// Residuals and defects of a run, as they would be without the forces that push it, beside columns of numbers.
     ///
     /// Columns are written where they stay: those of a screen are hundreds of megabytes.

@@ -2,7 +2,7 @@
 //!
 //!   −(g/z₀)(z + t_d ż exp(−(q̇/v_d)²)),   ż = q̇ − max(|q̇|, v_c) z/z₀,   t_d = 2 ms,  v_d = 0.02 rad/s or m/s
 //!
-//! A joint that does not quite hold creeps below v_c. A diagnosis frees that rate only where friction that holds does not follow all of the motion.
+//! A joint that does not quite hold creeps below v_c. A diagnosis frees z₀ and v_c only where friction with the usual ones does not follow all of the motion.
 
 use super::joint::SMALL;
 use super::*;
@@ -25,6 +25,8 @@ const V_C: Parameter =
 /// Rate from which creep is looked for, and the largest.
 const CREEP: f64 = 1e-3;
 const FASTEST: f64 = 0.1;
+/// Between which a reach is looked for.
+const REACHES: [f64; 2] = [1e-6, 0.1];
 
 /// Dry friction of an entry.
 fn dry(entry: &Entry<'_>, level: DryLevel) -> JointLaw {
@@ -80,7 +82,7 @@ pub static JOINT_STRIBECK_FRICTION: EffectDef = EffectDef {
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
-        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![x[0], x[3]])]),
+        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![x[0], x[3], x[4]])]),
         start: Start::Mean,
         minima: Minima::Several,
         concerns: Concerns::Motion,
@@ -112,7 +114,7 @@ pub static JOINT_FRICTION_ASYMMETRY: EffectDef = EffectDef {
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
-        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![0.5 * (x[0] + x[1]), x[2]])]),
+        nested: Some(|_, x| vec![Alternative::here(&JOINT_COULOMB_FRICTION, vec![0.5 * (x[0] + x[1]), x[2], x[3]])]),
         start: Start::Mean,
         minima: Minima::One,
         concerns: Concerns::Motion,
@@ -121,25 +123,26 @@ pub static JOINT_FRICTION_ASYMMETRY: EffectDef = EffectDef {
     corrects: Corrects::Nothing,
 };
 
-/// The creep rate, none, as the last of some coordinates.
-fn creeping(mut coordinates: Vec<Coordinate>, joint: &JointFact) -> Candidate {
+/// What dry friction does before it slides, as the last of some coordinates: it has the usual reach and does not creep.
+fn held(mut coordinates: Vec<Coordinate>, joint: &JointFact) -> Candidate {
+    let own = coordinates.len();
+    coordinates.push(Coordinate::log(Z_0.name, REACH, REACHES));
     coordinates.push(Coordinate::free(V_C.name, 0.0).within([0.0, FASTEST]));
-    let last = coordinates.len() - 1;
-    Candidate::new(joint.place(), coordinates).in_reserve(last, CREEP)
+    Candidate::new(joint.place(), coordinates).in_reserve(own, REACH.ln()).in_reserve(own + 1, CREEP)
 }
 
 fn coulomb(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
-    vec![creeping(vec![Coordinate::level("c", 0.0)], joint).screened(&[Along::new(0, SMALL)])]
+    vec![held(vec![Coordinate::level("c", 0.0)], joint).screened(&[Along::new(0, SMALL)])]
 }
 
 fn by_side(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
     let levels = ["c_plus", "c_minus"].map(|key| Coordinate::level(key, 0.0));
-    vec![creeping(levels.to_vec(), joint).screened(&Along::each(0..2, SMALL))]
+    vec![held(levels.to_vec(), joint).screened(&Along::each(0..2, SMALL))]
 }
 
 fn stribeck(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
     let coordinates =
         vec![Coordinate::level("c", 0.0), Coordinate::level("s", 0.0), Coordinate::log("v_s", 0.05, [1e-3, 3.0])];
-    let falling = creeping(coordinates, joint).encoded(Encoding::Excess { of: 1, over: 0 });
+    let falling = held(coordinates, joint).encoded(Encoding::Excess { of: 1, over: 0 });
     vec![falling.screened_on(2, &[0.02, 0.08, 0.3], &Along::each(0..2, SMALL))]
 }
