@@ -150,3 +150,21 @@ fn what_a_law_is_off_by_is_no_company() {
     check_number(&diagnosis, "c", 0.1);
     assert!(diagnosis.explained_share.unwrap().share > 0.98);
 }
+
+#[test]
+fn dry_friction_that_creeps_or_yields_is_dry_friction_still() {
+    let place = "joint:hinge";
+    let cases = [("v_c", 0.05), ("z_0", 4e-3)];
+    for (key, value) in cases {
+        let planted = effect("joint-coulomb-friction", place, &[("c", number(0.3)), (key, number(value))]);
+        let diagnosis = swing(std::slice::from_ref(&planted));
+        check(&diagnosis, &planted);
+        check_number(&diagnosis, "c", 0.3);
+        check_number(&diagnosis, key, value);
+    }
+    // What the usual law does, no detail of it says.
+    let usual = effect("joint-coulomb-friction", place, &[("c", number(0.3))]);
+    let diagnosis = swing(std::slice::from_ref(&usual));
+    check(&diagnosis, &usual);
+    assert!(!diagnosis.effects[0].params.keys().any(|key| key == "v_c" || key == "z_0"), "{:?}", diagnosis.effects[0]);
+}

@@ -316,7 +316,7 @@ fn relaxed(problem: &Problem<'_>, mut now: Fitted, many: usize) -> Fitted {
         let with = tried.set.members.last().map_or_else(String::new, |(h, x)| told(h, x));
         problem.stage.work.watch.step(&format!("    {title} with {with}: criterion {gain:.1}"));
         if gain < 0.0 {
-            now = tried;
+            now = to_the_end(problem, tried);
         }
     }
     now
