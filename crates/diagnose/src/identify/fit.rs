@@ -215,8 +215,9 @@ impl<'a> Problem<'a> {
     }
 
     /// A fit with intervals halved in which the missing force does not stay what it is, as far as there are samples for it.
-    /// `reuse`: derivatives of the others stay what they are.
+    /// `reuse`: derivatives of the others stay what they are until all are.
     pub fn refined(&self, mut now: Fitted, reuse: bool) -> Result<Fitted, DiagnoseError> {
+        let begun = now.intervals();
         for _ in 0..HALVED {
             let frame = self.frame(&now);
             let bases: Option<Vec<Vec<Base>>> = now.tracks.par_iter().map(|t| frame.exact(t)).collect();
@@ -232,6 +233,10 @@ impl<'a> Problem<'a> {
             let links: Option<Vec<Arc<Vec<Link>>>> = links.collect();
             now.spread.local.clear();
             now = self.settle(Fitted { tracks, links: links.unwrap_or_default(), ..now }, SETTLING, reuse)?;
+        }
+        if reuse && now.intervals() > begun {
+            now.links.clear();
+            now = self.settle(now, SETTLING, false)?;
         }
         Ok(now)
     }
