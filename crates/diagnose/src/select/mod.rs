@@ -5,7 +5,8 @@
 //!
 //!   −2 log L(θ̂, q̂, κ̂) + d ln N − 2 log prior        (BIC: Schwarz 1978)
 
-pub mod lines;
+mod detail;
+mod lines;
 pub mod pool;
 pub mod regression;
 pub mod scale;

@@ -1,5 +1,6 @@
 //! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
 
+use super::detail::{but_for_a_detail, relaxed};
 use super::gamma_quantile_over_mean;
 use super::lines::lines;
 use super::pool::{Pool, price};
@@ -72,10 +73,8 @@ const SPOKEN: usize = 2;
 /// Share of the best promise below which a set is not fitted, and of its own promise below which it was none.
 const PROMISING: f64 = 0.6;
 const REFUTED: f64 = 0.1;
-/// Share of the missing force that a law leaves which is so but for a detail.
-const NEARLY: f64 = 0.05;
 /// Iterations of a first fit, and to the end.
-const LOOK: Reach = Reach { iterations: 6, reuse: true };
+pub(super) const LOOK: Reach = Reach { iterations: 6, reuse: true };
 const GLANCE: Reach = Reach { iterations: 3, reuse: true };
 const END: Reach = Reach { iterations: 6, reuse: false };
 /// Most times that a fit is followed anew to its end, and fall of −2 log likelihood that is worth another time.
@@ -216,8 +215,8 @@ fn fit_sets(
     Bounds { round, many, cheapest, all }: Bounds,
     tried: &mut Vec<Tried>,
 ) -> Result<Option<Fitted>, DiagnoseError> {
-    let (mut now, mut finer);
-    now = begun;
+    let mut now = begun;
+    let mut finer: Fitted;
     let (before, here) = (criterion(now, many), problem.power(now));
     let mut worthy: Vec<(usize, Fitted)> = Vec::new();
     let mut enough: Vec<Vec<String>> = Vec::new();
@@ -234,36 +233,22 @@ fn fit_sets(
         if enough.iter().any(|known| known.iter().all(|t| added.contains(t))) {
             continue;
         }
-        let members = set.members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
-        let start = Fitted { spread: set.spread, ..now.clone() };
-        let Ok(fit) = problem.fit(&start, members, LOOK) else {
+        let Ok(fit) = fit_first(problem, now, &set, pool) else {
             refuted.push(added);
             continue;
         };
-        // A law that takes nearly all of the missing force away and is no likelier for it is so but for a detail.
-        let is_nearly = |fit: &Fitted, now: &Fitted| {
-            criterion(fit, many) >= criterion(now, many) && problem.power(fit) < NEARLY * here
-        };
-        let closer = is_nearly(&fit, now).then(|| closer(problem, now, &fit)).flatten();
-        let fit = match closer {
-            Some((same, closer)) => {
-                finer = same;
-                now = &finer;
-                closer
-            }
-            None => fit,
-        };
-        let fit = if is_nearly(&fit, now) { relaxed(problem, fit, many) } else { fit };
+        let (same, fit) = but_for_a_detail(problem, now, fit, (many, here));
+        if let Some(same) = same {
+            finer = same;
+            now = &finer;
+        }
         let after = criterion(&fit, many);
         let (promised, brought) = (now.score - set.score, now.score - fit.score);
         let left = remainder(problem, &fit)?;
-        let (names, gain) = (names(&fit.set), after - before);
         let power = problem.power(&fit);
-        let said = format!(
-            "  {names}: promised {promised:.1}, brought {brought:.1}, criterion {gain:.1}, {:.3} % of the missing force left",
-            100.0 * power / here
-        );
-        problem.stage.work.watch.step(&said);
+        let (names, gain, share) = (names(&fit.set), after - before, 100.0 * power / here);
+        let gains = format!("promised {promised:.1}, brought {brought:.1}, criterion {gain:.1}");
+        problem.stage.work.watch.step(&format!("  {names}: {gains}, {share:.3} % of the missing force left"));
         if brought < REFUTED * promised {
             refuted.push(added.clone());
         }
@@ -285,41 +270,15 @@ fn fit_sets(
     Ok(best_of(problem, worthy, tried, (before, many)))
 }
 
-/// A fit that does not follow intervals which the one that it was begun with follows, on intervals that are halved there, and that one on the same: how long
-/// an unknown force stays what it is was chosen by what the first had missed. None where all are followed, or too short already.
-fn closer(problem: &Problem<'_>, before: &Fitted, now: &Fitted) -> Option<(Fitted, Fitted)> {
-    if now.spread.factors() <= before.spread.factors() {
-        return None;
-    }
-    let halved = problem.refined(now.clone(), false).ok().filter(|halved| halved.intervals() > now.intervals())?;
-    let same = problem.onto_intervals(before, &halved).ok()?;
-    let begun = Fitted { datum: same.datum, ..halved };
-    let closer = problem.fit(&begun, begun.set.clone(), LOOK).ok()?;
-    let (many, few) = (closer.intervals(), now.intervals());
-    problem
-        .stage
-        .work
-        .watch
-        .step(&format!("    {few} intervals halved to {many}: −2 log L {:.1}, was {:.1}", closer.score, now.score));
-    (closer.score < now.score).then_some((same, closer))
-}
-
-/// A fit whose laws have what they hold in reserve, where it is better so.
-fn relaxed(problem: &Problem<'_>, mut now: Fitted, many: usize) -> Fitted {
-    let all: Vec<String> = now.set.findings().map(|(h, _)| h.title()).collect();
-    for title in all {
-        let Some(at) = now.set.members.iter().position(|(h, _)| h.title() == title) else { continue };
-        let (h, x) = &now.set.members[at];
-        let Some((free, start)) = h.relaxed(x) else { continue };
-        let Ok(tried) = problem.fit(&now, now.set.without(at).with(&free, &start), LOOK) else { continue };
-        let gain = criterion(&tried, many) - criterion(&now, many);
-        let with = tried.set.members.last().map_or_else(String::new, |(h, x)| told(h, x));
-        problem.stage.work.watch.step(&format!("    {title} with {with}: criterion {gain:.1}"));
-        if gain < 0.0 {
-            now = to_the_end(problem, tried);
-        }
-    }
-    now
+/// A proposal fitted beside a fit.
+fn fit_first(
+    problem: &Problem<'_>,
+    now: &Fitted,
+    Proposal { members, spread, .. }: &Proposal,
+    pool: &Pool,
+) -> Result<Fitted, DiagnoseError> {
+    let members = members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
+    problem.fit(&Fitted { spread: spread.clone(), ..now.clone() }, members, LOOK)
 }
 
 /// The first proposal that was not fitted yet.
@@ -505,7 +464,7 @@ fn siblings(looked: &Looked, now: &Fitted, single: &LinearSet) -> Vec<Proposal> 
 }
 
 /// A fit that is followed anew as long as that betters it: forces that pushed the runs beside other numbers hold these where they were.
-fn to_the_end(problem: &Problem<'_>, mut now: Fitted) -> Fitted {
+pub(super) fn to_the_end(problem: &Problem<'_>, mut now: Fitted) -> Fitted {
     for _ in 0..ENDS {
         let Ok(next) = problem.fit(&now, now.set.clone(), END) else { break };
         let fall = now.score - next.score;
