@@ -245,10 +245,9 @@ fn fit_sets(
         let after = criterion(&fit, many);
         let (promised, brought) = (now.score - set.score, now.score - fit.score);
         let left = remainder(problem, &fit)?;
-        let power = problem.power(&fit);
-        let (names, gain, share) = (names(&fit.set), after - before, 100.0 * power / here);
+        let (names, power, gain) = (names(&fit.set), problem.power(&fit), after - before);
         let gains = format!("promised {promised:.1}, brought {brought:.1}, criterion {gain:.1}");
-        problem.stage.work.watch.step(&format!("  {names}: {gains}, {share:.3} % of the missing force left"));
+        problem.stage.work.watch.step(&format!("  {names}: {gains}, {:.3} % left", 100.0 * power / here));
         if brought < REFUTED * promised {
             refuted.push(added.clone());
         }
