@@ -10,6 +10,7 @@ told, whether it is the same, and by how many of its standard errors the worst n
 within their 95 % intervals (1.96 standard errors).
 """
 
+import itertools
 import json
 import pathlib
 import subprocess
@@ -170,8 +171,8 @@ def main():
     cases = [case for case in CASES if any(case.startswith(p) for p in prefixes)]
     print("| planted | verdict | told, where that is not what was planted | right | standard errors off, worst number | s |\n| --- | --- | --- | --- | --- | --- |", flush=True)
     count, all_off = 0, []
-    for turn, (case, seed) in enumerate((case, seed) for seed in seeds for case in cases):
-        line, right, off = diagnosed(softdock, recordings, out, case, seed, sizes[turn % len(sizes)])
+    for (i, seed), (k, case) in itertools.product(enumerate(seeds), enumerate(cases)):
+        line, right, off = diagnosed(softdock, recordings, out, case, seed, sizes[(i + k) % len(sizes)])
         count += right
         all_off += [off] if off else []
         print(line, flush=True)

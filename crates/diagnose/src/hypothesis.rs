@@ -123,15 +123,17 @@ impl Hypothesis {
     pub fn effect(&self, x: &[f64]) -> Effect {
         let mut params: BTreeMap<String, ParamValue> =
             self.constants.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
-        for (key, value) in self.decode(x).into_iter().filter(|(key, _)| !self.is_in_reserve(key)) {
+        for (key, value) in self.decode(x) {
             set(&mut params, key, value);
         }
         Effect { name: self.name.to_owned(), place: self.place.clone(), params }
     }
 
-    /// The effect's parameters at some coordinates, component by component.
+    /// The effect's parameters at some coordinates, component by component; it is told without those that are in reserve.
     pub fn decode(&self, x: &[f64]) -> Vec<(&'static str, f64)> {
-        self.encoding.decode(&self.coordinates, x)
+        let is_in_reserve = |key: &str| self.reserve.iter().any(|(k, _)| self.coordinates[*k].key == key);
+        let all = self.encoding.decode(&self.coordinates, x);
+        all.into_iter().filter(|(key, _)| !is_in_reserve(key)).collect()
     }
 
     /// Coordinates to begin a refit with, from the amplitudes of a screen point's columns; `None` where they are not possible.
@@ -204,11 +206,6 @@ impl Hypothesis {
     /// What it has to bring beside what its numbers cost, in the criterion.
     pub fn burden(&self) -> f64 {
         self.def.identify.penalty.map_or(0.0, |penalty| penalty(&self.place))
-    }
-
-    /// Whether a parameter is in reserve: the effect is told without it.
-    pub fn is_in_reserve(&self, key: &str) -> bool {
-        self.reserve.iter().any(|(k, _)| self.coordinates[*k].key == key)
     }
 
     /// Standard errors of the parameters from the covariance of the coordinates, by difference quotients of [`Self::decode`].

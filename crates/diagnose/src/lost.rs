@@ -9,7 +9,8 @@
 use crate::fit::{Effort, Fit};
 use crate::linear::{Segment, Stage, finite};
 use crate::plant::Built;
-use nalgebra::{DMatrix, DVector};
+use crate::start::Start;
+use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -79,9 +80,7 @@ pub(crate) fn cut_off(stage: &Stage<'_>, whole: Fit) -> Fit {
 
 /// The first part of a run, as far as a start leads along it; none where that is too little.
 fn followed_part(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
-    let mut now = Segment { columns: None, ..run.clone() };
-    now.span.to = run.span.from + FIRST * (run.span.to - run.span.from);
-    now = stage.begun_anew(built, &[now], (Effort::STARTS, POOR_RUN)).pop()?;
+    let mut now = first_part(stage, built, run)?;
     for _ in 0..TURNS {
         let end = followed_until(stage, built, &Segment { span: run.span, ..now.clone() });
         if end <= now.span.to {
@@ -91,6 +90,13 @@ fn followed_part(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segm
         now = stage.fit_starts(built, &[now], Effort::STARTS).pop()?.segment;
     }
     (is_near(stage, built, &now)).then_some(Segment { columns: None, ..now })
+}
+
+/// The part of a run that must be followed at least, from the best start for it.
+fn first_part(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
+    let mut first = Segment { columns: None, ..run.clone() };
+    first.span.to = run.span.from + FIRST * (run.span.to - run.span.from);
+    stage.begun_anew(built, &[first], (Effort::STARTS, POOR_RUN)).pop()
 }
 
 /// Whole runs with those that are lost begun from other starts, where some lead further that are as likely before the loss.
@@ -105,9 +111,7 @@ pub(crate) fn scattered(stage: &Stage<'_>, built: &Built, runs: &[Segment]) -> V
 /// A run followed from part to part: where it is lost, on from the best of many starts that the part before leaves possible. None where none is near.
 fn drawn(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
     let mut dice = ChaCha8Rng::seed_from_u64(run.run as u64);
-    let mut now = Segment { columns: None, ..run.clone() };
-    now.span.to = run.span.from + FIRST * (run.span.to - run.span.from);
-    now = stage.begun_anew(built, &[now], (Effort::STARTS, POOR_RUN)).pop()?;
+    let mut now = first_part(stage, built, run)?;
     for _ in 0..TURNS {
         let end = followed_until(stage, built, &Segment { span: run.span, ..now.clone() });
         if end <= run.span.from {
@@ -115,21 +119,9 @@ fn drawn(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
         }
         now.span.to = end;
         now = stage.fit_starts(built, &[Segment { columns: None, ..now }], Effort::STARTS).pop()?.segment;
-        let known = now.columns.clone()?;
-        let spread = DMatrix::from_columns(&known.columns).svd(false, true);
-        let axes = spread.v_t.as_ref()?.transpose();
-        let largest = spread.singular_values.max();
-        // What the part does not show at all stays where it is.
-        let sizes = spread.singular_values.map(|s| if s > SHOWN * largest { 1.0 / s } else { 0.0 });
-        let draw = |dice: &mut ChaCha8Rng| {
-            let normal = |dice: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(dice) };
-            let by = DVector::from_fn(sizes.len(), |k, _| sizes[k] * normal(dice));
-            now.start.retract(&known.freedoms, (&axes * by).as_slice())
-        };
-        let mut starts = vec![now.start.clone()];
-        starts.extend((0..DRAWN).map(|_| draw(&mut dice)));
+        let starts = starts_beside(&now, &mut dice)?;
         let whole = |start| Segment { start, span: run.span, columns: None, ..now.clone() };
-        let cost = |start: &crate::start::Start| finite(stage.residuals(built, &whole(start.clone())).norm_squared());
+        let cost = |start: &Start| finite(stage.residuals(built, &whole(start.clone())).norm_squared());
         let costs: Vec<f64> = starts.par_iter().map(cost).collect();
         let best = (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b]))?;
         now = stage.fit_starts(built, &[whole(starts[best].clone())], Effort::STARTS).pop()?.segment;
@@ -138,6 +130,23 @@ fn drawn(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
         }
     }
     None
+}
+
+/// A part's start, and others that are as likely by its last linearisation; none where it has none, or nothing that moves.
+fn starts_beside(part: &Segment, dice: &mut ChaCha8Rng) -> Option<Vec<Start>> {
+    let known = part.columns.as_ref().filter(|known| !known.columns.is_empty())?;
+    let spread = DMatrix::from_columns(&known.columns).svd(false, true);
+    let axes = spread.v_t?.transpose();
+    let largest = spread.singular_values.max();
+    // What the part does not show at all stays where it is.
+    let sizes = spread.singular_values.map(|s| if s > SHOWN * largest { 1.0 / s } else { 0.0 });
+    let mut draw = || {
+        let by = sizes.map(|size| size * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, dice));
+        part.start.retract(&known.freedoms, (&axes * by).as_slice())
+    };
+    let mut starts = vec![part.start.clone()];
+    starts.extend((0..DRAWN).map(|_| draw()));
+    Some(starts)
 }
 
 /// Share of what a part shows best that it has to show of something.

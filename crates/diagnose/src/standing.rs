@@ -401,10 +401,5 @@ const DIVERGED: f64 = 300.0;
 
 /// Parameters in a line.
 pub(crate) fn told(h: &Hypothesis, x: &[f64]) -> String {
-    h.decode(x)
-        .iter()
-        .filter(|(k, _)| !h.is_in_reserve(k))
-        .map(|(key, value)| format!("{key} {value:.4e}"))
-        .collect::<Vec<_>>()
-        .join(", ")
+    h.decode(x).iter().map(|(key, value)| format!("{key} {value:.4e}")).collect::<Vec<_>>().join(", ")
 }

@@ -169,7 +169,7 @@ fn effects(findings: &Findings, wanted: impl Fn(&Member) -> bool) -> Vec<Found> 
         let effect = h.effect(x);
         let held = |key: &str| fit.set.held.iter().any(|(n, k)| *n == m && h.coordinates[*k].key == key);
         let mut std_err: BTreeMap<String, StdErr> = BTreeMap::new();
-        for (key, error) in h.errors(x, &covariance_of(findings, m)).into_iter().filter(|(k, _)| !h.is_in_reserve(k)) {
+        for (key, error) in h.errors(x, &covariance_of(findings, m)) {
             let value = if held(key) || error <= 0.0 { f64::INFINITY } else { error };
             match key.split_once('[') {
                 None => {

@@ -84,7 +84,7 @@ pub struct Reach {
 const KNOTS: std::ops::RangeInclusive<usize> = 24..=48;
 const SAMPLES: usize = 12;
 /// How many times as many a run has where a replay leaves the range of numbers, one after the other.
-const SHORTER: [usize; 3] = [1, 2, 4];
+const SHORTER: [usize; 2] = [2, 4];
 /// Promised fall of −2 log likelihood below which a fit has converged.
 const CONVERGED: f64 = 0.3;
 /// Most times that a step is shortened, to the half, an eighth, a sixty-fourth …; what is left of it each time is this to the power of the time.
@@ -162,12 +162,15 @@ impl<'a> Problem<'a> {
 
     /// The same with intervals of one length, shorter ones where a replay leaves the range of numbers before its samples correct it.
     fn begun(&self) -> Result<Fitted, DiagnoseError> {
-        let mut begun = Err(self.lost());
-        for knots in SHORTER.iter().map(|times| times * self.knots) {
-            begun = self.begun_in(knots);
-            if self.runs.is_empty() || begun.is_ok() {
+        if self.runs.is_empty() {
+            return Err(self.lost());
+        }
+        let mut begun = self.begun_in(self.knots);
+        for times in SHORTER {
+            if begun.is_ok() {
                 break;
             }
+            begun = self.begun_in(times * self.knots);
         }
         begun
     }
@@ -176,11 +179,8 @@ impl<'a> Problem<'a> {
     fn begun_in(&self, knots: usize) -> Result<Fitted, DiagnoseError> {
         let set = EffectSet::default();
         let built = self.plant.build(&[])?;
-        let tracks: Vec<Track> =
-            self.runs.par_iter().map(|r| self.cut(&built, (*r, knots))).collect::<Result<_, _>>()?;
-        if tracks.is_empty() {
-            return Err(self.lost());
-        }
+        let cut = |run: &usize| Track::cut(&self.stage, (&built, self.forces.len()), *run, knots);
+        let tracks: Vec<Track> = self.runs.par_iter().map(cut).collect::<Result<_, _>>()?;
         let freedoms = coordinates(&built, &tracks[0].intervals[0].start);
         let frame = Frame { stage: &self.stage, built: &built, freedoms: &freedoms, forces: &self.forces };
         let typical = frame.link(tracks[0].run, &tracks[0].intervals[knots / 2]).ok_or_else(|| self.lost())?;
@@ -210,10 +210,6 @@ impl<'a> Problem<'a> {
         self.settle(none, SETTLING, false)
     }
 
-    fn cut(&self, built: &Built, (run, knots): (usize, usize)) -> Result<Track, DiagnoseError> {
-        Track::cut(&self.stage, (built, self.forces.len()), run, knots)
-    }
-
     /// A fit with intervals halved in which the missing force does not stay what it is, as far as there are samples for it.
     /// `reuse`: derivatives of the others stay what they are until all are.
     pub fn refined(&self, mut now: Fitted, reuse: bool) -> Result<Fitted, DiagnoseError> {
@@ -227,10 +223,11 @@ impl<'a> Problem<'a> {
             }
             let tracks: Vec<Track> =
                 now.tracks.par_iter().zip(&which).map(|(t, w)| frame.halved(t, w)).collect::<Result<_, _>>()?;
-            let known = if reuse { &now.links[..] } else { &[] };
-            let pairs = now.tracks.par_iter().zip(known).zip(&tracks);
-            let links = pairs.map(|((before, links), after)| frame.links_again((before, links), after).map(Arc::new));
-            let links: Option<Vec<Arc<Vec<Link>>>> = links.collect();
+            let again = || {
+                let pairs = now.tracks.par_iter().zip(&now.links).zip(&tracks);
+                pairs.map(|((before, links), after)| frame.links_again((before, links), after).map(Arc::new)).collect()
+            };
+            let links: Option<Vec<Arc<Vec<Link>>>> = reuse.then(again).flatten();
             now.spread.local.clear();
             now = self.settle(Fitted { tracks, links: links.unwrap_or_default(), ..now }, SETTLING, reuse)?;
         }

@@ -259,17 +259,18 @@ impl Frame<'_> {
         for i in 0..track.intervals.len() {
             let known = known.map(|links| &links[i]);
             let begun = track.intervals[i].clone();
-            let with = (told.force, &told.factors[i]);
-            let passed = match self.pass(track.run, &mut track.intervals[i], (&root, with), (i == 0, known)) {
-                Some(passed) => passed,
-                None => {
-                    // Where it was led astray it begins anew from what the samples say.
-                    root = DMatrix::from_diagonal(told.start);
-                    let start = guess(self.built, &self.stage.tapes[track.run], begun.span.from);
-                    track.intervals[i] = Interval { start, force: DVector::zeros(begun.force.len()), ..begun };
-                    self.pass(track.run, &mut track.intervals[i], (&root, with), (true, None))?
-                }
-            };
+            let factors = &told.factors[i];
+            let passed =
+                match self.pass(track.run, &mut track.intervals[i], (&root, told.force, factors), (i == 0, known)) {
+                    Some(passed) => passed,
+                    None => {
+                        // Where it was led astray it begins anew from what the samples say.
+                        root = DMatrix::from_diagonal(told.start);
+                        let start = guess(self.built, &self.stage.tapes[track.run], begun.span.from);
+                        track.intervals[i] = Interval { start, force: DVector::zeros(begun.force.len()), ..begun };
+                        self.pass(track.run, &mut track.intervals[i], (&root, told.force, factors), (true, None))?
+                    }
+                };
             root = passed.root;
             links.push(passed.link);
             if let [this, next, ..] = &mut track.intervals[i..] {
@@ -286,7 +287,7 @@ impl Frame<'_> {
         &self,
         run: usize,
         interval: &mut Interval,
-        (root, (force, factors)): (&DMatrix<f64>, (&DVector<f64>, &DVector<f64>)),
+        (root, force, factors): (&DMatrix<f64>, &DVector<f64>, &DVector<f64>),
         (is_first, known): (bool, Option<&Link>),
     ) -> Option<Passed> {
         let expected = interval.start.clone();

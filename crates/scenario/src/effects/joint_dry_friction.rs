@@ -45,7 +45,7 @@ pub static JOINT_COULOMB_FRICTION: EffectDef = EffectDef {
     source: SOURCE,
     build: Build::Effort(|entry| dry(entry, DryLevel::Constant(entry.number("c")))),
     identify: Identify {
-        candidates: Candidates::Joint(coulomb),
+        candidates: Candidates::Joint(|joint, _| held_levels(joint, &["c"])),
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
@@ -110,7 +110,7 @@ pub static JOINT_FRICTION_ASYMMETRY: EffectDef = EffectDef {
         dry(entry, level)
     }),
     identify: Identify {
-        candidates: Candidates::Joint(by_side),
+        candidates: Candidates::Joint(|joint, _| held_levels(joint, &["c_plus", "c_minus"])),
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
@@ -131,13 +131,10 @@ fn held(mut coordinates: Vec<Coordinate>, joint: &JointFact) -> Candidate {
     Candidate::new(joint.place(), coordinates).in_reserve(own, REACH.ln()).in_reserve(own + 1, CREEP)
 }
 
-fn coulomb(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
-    vec![held(vec![Coordinate::level("c", 0.0)], joint).screened(&[Along::new(0, SMALL)])]
-}
-
-fn by_side(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
-    let levels = ["c_plus", "c_minus"].map(|key| Coordinate::level(key, 0.0));
-    vec![held(levels.to_vec(), joint).screened(&Along::each(0..2, SMALL))]
+/// Levels of dry friction, each with a column at zero.
+fn held_levels(joint: &JointFact, levels: &[&'static str]) -> Vec<Candidate> {
+    let coordinates = levels.iter().map(|key| Coordinate::level(key, 0.0)).collect();
+    vec![held(coordinates, joint).screened(&Along::each(0..levels.len(), SMALL))]
 }
 
 fn stribeck(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {

@@ -6,6 +6,7 @@
 //! coordinates together are free variables of a start.
 
 use super::body::{calc_carried, calc_motion, of_bodies, rest};
+use super::joint::REACH;
 use crate::effect::EffectKind;
 use crate::model::Model;
 use crate::state::State;
@@ -40,8 +41,7 @@ pub fn memory_layout(model: &Model) -> Vec<MemorySlot> {
 /// Usual sizes of an effect's coordinates.
 fn scales(kind: &EffectKind) -> &'static [f64] {
     match kind {
-        // The reach of dry friction.
-        EffectKind::Joint(_) => &[3e-4],
+        EffectKind::Joint(_) => &[REACH],
         // Milliradians of a loaded gear, and what they make in a tenth of a second.
         EffectKind::Series(_) => &[1e-3, 1e-2],
         EffectKind::Body(effect) => effect.law.memory_scales(),
