@@ -9,6 +9,7 @@ use crate::fit::{EffectSet, Fit};
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach};
 use crate::linear::{Segment, Stage, Steps};
+use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::Span;
 use crate::select::search::{Found, NEXT_TO_NOTHING, Remainder, Tried, hypotheses_of, remainder, search};
@@ -60,6 +61,30 @@ pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Cour
 pub(crate) fn problem<'a>(stage: &Stage<'a>, plant: &'a Plant, own: &Facts, role: Role) -> Problem<'a> {
     let runs = (0..stage.tapes.len()).filter(|r| stage.tapes[*r].role == role).collect();
     Problem::new(*stage, plant, own, runs)
+}
+
+/// The same at steps that suit what was found: it may be faster than what the nominal model has, and what steps lose is taken for its numbers.
+pub(crate) fn at_suiting_steps(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    own: &Facts,
+    (course, window): (Course, f64),
+    chosen: Discretisation,
+) -> Result<(Course, Discretisation), DiagnoseError> {
+    let best = &course.found.best;
+    let windows = windows_of(&problem(stage, plant, own, Role::Fit), best, window);
+    let judged = as_fit(stage, best, windows);
+    if !best.set.has_findings() || judged.rms() > pace::NEAR {
+        return Ok((course, chosen));
+    }
+    let found = pace::suited(stage, (&judged.built, &judged.segments), judged.count);
+    if found.pace == stage.pace {
+        return Ok((course, found));
+    }
+    let problem = problem(&Stage { pace: found.pace, ..*stage }, plant, own, Role::Fit);
+    let best = problem.fit(best, best.set.clone(), LAST)?;
+    let left = [course.left[0], remainder(&problem, &best)?];
+    Ok((Course { found: Found { best, ..course.found }, left }, found))
 }
 
 /// The last fit, to all samples.

@@ -33,6 +33,8 @@ const FINER: u32 = 2;
 const FREE: f64 = 0.125;
 /// Part of what a model misses that counts like noise: steps need not be finer than that tells.
 const OF_THE_MISS: f64 = 0.3;
+/// Error (units of noise) up to which steps that suit a corrected model are looked for.
+pub(crate) const NEAR: f64 = 1.5;
 /// Windows that are looked at.
 const WINDOWS: usize = 24;
 
@@ -112,6 +114,15 @@ pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment], tolerance: f64
             pace = Pace { step: pace.step.min(finer.step), free: pace.free.min(finer.free), ..pace };
         }
     }
+}
+
+/// Steps that suit a corrected model where so many scalars are told in some segments, said.
+pub(crate) fn suited(stage: &Stage<'_>, (built, segments): (&Built, &[Segment]), count: usize) -> Discretisation {
+    let found = refine(stage, built, segments, tolerance_of(count));
+    let (Pace { step, free, .. }, worst) = (found.pace, found.worst);
+    let said = format!("steps of {step:.3e} s, {free:.3e} s in free flight: halving moves {worst:.1e}");
+    stage.work.watch.step(&said);
+    found
 }
 
 /// Difference by halved steps, units of noise, that so many scalars bear where numbers are fitted to the end.

@@ -68,8 +68,6 @@ const LIMITS: Limits = Limits { effects: 6, refits: 6, ends: 2 };
 /// Error (units of noise) and share of the mismatch up to which what a corrected model leaves may be the errors of its own steps and starts.
 const RIGHT: f64 = 1.1;
 const NEXT_TO_NOTHING: f64 = 0.01;
-/// Error (units of noise) up to which steps that suit a corrected model are looked for.
-const NEAR: f64 = 1.5;
 /// Diagnoses; `watch` hears how it goes.
 ///
 /// A search begins in windows. Where one length of them leads to nothing that explains most of the mismatch another is tried, unless the
@@ -240,6 +238,8 @@ fn diagnose_whole(
     clock.stage("search", 0.25);
     let course = along::seek(few, plant, &own)?;
     clock.stage("fit to all samples", 0.7);
+    let (course, discretisation) = along::at_suiting_steps(few, plant, &own, (course, window), discretisation)?;
+    let few = &Stage { pace: discretisation.pace, ..*few };
     let stage = Stage { tapes: &tapes, ..*few };
     let thin_best = course.found.best.clone();
     let course = along::fit_to_all((few, &stage), plant, &own, course)?;
@@ -497,16 +497,10 @@ fn fit_to_all((thin, all): (&Stage<'_>, &Stage<'_>), plant: &Plant, standing: St
 /// Steps that suit the corrected model over what it is judged by: what was found may be faster than what the nominal model has.
 fn suited(stage: &Stage<'_>, standing: &Standing, chosen: Discretisation) -> Discretisation {
     let judged = standing.judge();
-    if !judged.set.has_findings() || judged.rms() > NEAR {
-        return Discretisation { pace: stage.pace, ..chosen };
+    match judged.set.has_findings() && judged.rms() <= pace::NEAR {
+        true => pace::suited(stage, (&judged.built, &judged.segments), judged.count),
+        false => Discretisation { pace: stage.pace, ..chosen },
     }
-    let found = pace::refine(stage, &judged.built, &judged.segments, pace::tolerance_of(judged.count));
-    let Pace { step, free, .. } = found.pace;
-    stage
-        .work
-        .watch
-        .step(&format!("steps of {step:.3e} s, {free:.3e} s in free flight: halving moves {:.1e}", found.worst));
-    found
 }
 
 /// What the corrected model leaves at the places that are drawn, as forces on the nominal one.

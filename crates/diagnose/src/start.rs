@@ -75,6 +75,12 @@ impl Freedom {
         }
     }
 
+    /// The largest that it comes to by itself; none where nothing holds it.
+    pub fn largest(&self, built: &Built) -> Option<f64> {
+        let Self::Memory(slot) = *self else { return None };
+        sim::memory_layout(&built.model).iter().find(|s| s.offset == slot).and_then(|s| s.largest)
+    }
+
     /// How far a step of an estimate may trust its linear model, its own unit; `None`: as far as it leads.
     pub fn reach(&self) -> Option<f64> {
         matches!(self, Self::Bristle(..)).then_some(1e-4)
@@ -274,6 +280,16 @@ impl Start {
         let mut start = self.clone();
         freedoms.iter().zip(by).for_each(|(f, d)| start.shift(*f, *d));
         start
+    }
+
+    /// The same with the memory of effects no larger than it comes to by itself: a linear step knows no bounds.
+    pub fn possible(mut self, built: &Built) -> Self {
+        for slot in sim::memory_layout(&built.model) {
+            if let (Some(own), Some(largest)) = (self.memory.get_mut(slot.offset), slot.largest) {
+                *own = own.clamp(-largest, largest);
+            }
+        }
+        self
     }
 
     /// What has to be added to another start, coordinate by coordinate, to come to this one.

@@ -188,7 +188,8 @@ impl<'a> Problem<'a> {
         let steps: Vec<DVector<f64>> = tracks.iter().flat_map(|t| t.intervals.windows(2).map(step)).collect();
         let force = first_spread(&freedoms, &steps, &typical.b);
         let spread = Spread { force, ..Spread::steady(self.forces.len(), self.channels.len().max(1)) };
-        let first = |k: usize| (UNKNOWN / typical.s.column(k).norm()).min(LARGEST);
+        let shown = |k: usize| (UNKNOWN / typical.s.column(k).norm()).min(LARGEST);
+        let first = |k: usize| freedoms[k].largest(&built).unwrap_or_else(|| shown(k));
         let first = DVector::from_iterator(freedoms.len(), (0..freedoms.len()).map(first));
         let mut none = Fitted {
             set,
@@ -388,11 +389,13 @@ impl<'a> Problem<'a> {
     /// The runs of another fit followed by a model: with the derivatives that are known, and with its own where those lead astray.
     fn followed(&self, from: &Fitted, with: Fitted) -> Result<Fitted, DiagnoseError> {
         let mut now = with.clone();
-        let is_there = self
-            .linearise(&mut now, &[], true)
-            .map(|made| self.score_of(&made, &now) < from.score + THERE * from.count as f64);
-        if is_there.unwrap_or(false) {
-            return Ok(now);
+        // One law in the place of its equal: the runs are where it has them.
+        let is_replaced = with.set.members.len() == from.set.members.len() && with.set.titles() != from.set.titles();
+        if is_replaced {
+            let made = self.linearise(&mut now, &[], true);
+            if made.is_ok_and(|made| self.score_of(&made, &now) < from.score + THERE * from.count as f64) {
+                return Ok(now);
+            }
         }
         let is_near = self.follow(&mut now).and_then(|()| {
             let made = self.linearise(&mut now, &[], true)?;
@@ -449,8 +452,8 @@ impl<'a> Problem<'a> {
         let freedoms = coordinates(&built, &from.tracks[0].intervals[0].start.fitted_to(&built));
         let is_same = freedoms == from.freedoms;
         let first = |f: &Freedom| {
-            let known = from.freedoms.iter().position(|g| g == f);
-            known.map_or(LARGEST, |k| from.first[k])
+            let known = || from.freedoms.iter().position(|g| g == f).map(|k| from.first[k]);
+            f.largest(&built).or_else(known).unwrap_or(LARGEST)
         };
         let first = DVector::from_iterator(freedoms.len(), freedoms.iter().map(first));
         let mut now = Fitted { set, built, freedoms, first, ..from.clone() };

@@ -136,6 +136,11 @@ impl Track {
 }
 
 impl Frame<'_> {
+    /// A state moved along its coordinates, as far as the model can be there.
+    fn retract(&self, state: &Start, by: &[f64]) -> Start {
+        state.retract(self.freedoms, by).possible(self.built)
+    }
+
     fn shoot(&self, built: &Built, run: usize, interval: &Interval, start: &Start) -> Option<Base> {
         self.shoot_at(self.stage.pace, built, (run, interval), start)
     }
@@ -301,10 +306,10 @@ impl Frame<'_> {
             let off = DVector::from_vec(expected.difference(&interval.start, self.freedoms));
             let update = chain::update(&alone(taken, (&r, &off, &interval.force), factors), root, force);
             let (state, force) = (update.state + off, &update.force - &interval.force);
-            interval.start = interval.start.retract(self.freedoms, state.as_slice());
+            interval.start = self.retract(&interval.start, state.as_slice());
             interval.force = update.force;
             if pass == if is_first { FIRST } else { PASSES } {
-                let end = end.retract(self.freedoms, (&taken.a * state + &taken.b * force).as_slice());
+                let end = self.retract(&end, (&taken.a * state + &taken.b * force).as_slice());
                 return link.map(|link| Passed { link, end, root: update.root });
             }
         }
@@ -397,7 +402,7 @@ impl Frame<'_> {
         let mut between = a.clone();
         for (interval, b) in between.intervals.iter_mut().zip(&b.intervals) {
             let by = DVector::from_vec(b.start.difference(&interval.start, self.freedoms)) * share;
-            interval.start = interval.start.retract(self.freedoms, by.as_slice());
+            interval.start = self.retract(&interval.start, by.as_slice());
             interval.force = (1.0 - share) * &interval.force + share * &b.force;
         }
         between
@@ -407,7 +412,7 @@ impl Frame<'_> {
     pub fn moved(&self, track: &Track, smoothed: &Smoothed) -> Track {
         let mut moved = track.clone();
         for (interval, (by, force)) in moved.intervals.iter_mut().zip(smoothed.states.iter().zip(&smoothed.forces)) {
-            interval.start = interval.start.retract(self.freedoms, by.as_slice());
+            interval.start = self.retract(&interval.start, by.as_slice());
             interval.force.clone_from(force);
         }
         moved

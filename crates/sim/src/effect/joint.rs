@@ -254,6 +254,11 @@ impl JointEffect {
         }
     }
 
+    /// Deflection at which dry friction slides, rad or m; none of other laws.
+    pub(super) fn largest_deflection(&self) -> Option<f64> {
+        if let JointLaw::Dry(dry) = self.law { Some(dry.reach) } else { None }
+    }
+
     /// Whether it is dry friction.
     pub(super) fn is_dry(&self) -> bool {
         matches!(self.law, JointLaw::Dry(dry) if !dry.level.is_nothing())

@@ -23,15 +23,21 @@ pub struct MemorySlot {
     pub offset: usize,
     /// A usual size, for differences and priors; SI.
     pub scale: f64,
+    /// The largest that it comes to by itself, SI: dry friction slides at its reach. None where nothing holds it.
+    pub largest: Option<f64>,
 }
 
 /// All coordinates of the effects' memory, in order.
 pub fn memory_layout(model: &Model) -> Vec<MemorySlot> {
     let of = |(effect, kind): (usize, &EffectKind)| {
         let (start, scales) = (model.effects.memory(effect).start, scales(kind));
+        let largest = match kind {
+            EffectKind::Joint(effect) => effect.largest_deflection(),
+            _ => None,
+        };
         let slot = move |(k, name): (usize, &&'static str)| {
             let scale = scales.get(k).copied().unwrap_or(1.0);
-            MemorySlot { effect, name, offset: start + k, scale }
+            MemorySlot { effect, name, offset: start + k, scale, largest }
         };
         kind.memory_names().iter().enumerate().map(slot)
     };
