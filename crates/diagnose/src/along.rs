@@ -236,7 +236,7 @@ pub(crate) fn attempts(course: &Course) -> Vec<Attempt> {
                 name: h.name.to_owned(),
                 place: h.place.clone(),
                 score: tried.promised,
-                share: (fall / all).clamp(0.0, 1.0),
+                share: tried.taken.clamp(0.0, 1.0),
                 fall: Some(fall),
                 parameters: h.coordinates.len() - h.held.len(),
                 gain: Some(gain),

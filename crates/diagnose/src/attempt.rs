@@ -16,7 +16,7 @@ pub struct Attempt {
     pub place: String,
     /// Promised fall of the cost.
     pub score: f64,
-    /// Share of the excess that it promises, or has brought where it was refitted.
+    /// Share of the excess that it promises, or has brought where it was refitted; along whole runs what it has brought is a share of the missing force.
     pub share: f64,
     /// Fall of the cost after the refit; `None` where none was made.
     pub fall: Option<f64>,

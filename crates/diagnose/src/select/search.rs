@@ -48,6 +48,8 @@ pub struct Tried {
     pub criteria: [f64; 2],
     /// What the linear model had promised.
     pub promised: f64,
+    /// Share of the nominal model's missing force that it takes away.
+    pub taken: f64,
 }
 
 /// Effects at most, and how many the linear model may add at once.
@@ -261,7 +263,8 @@ fn fit_sets(
         let is_idle = smaller.iter().any(is_idle);
         smaller.push(Smaller { titles: added.clone(), power });
         let scores = [now.score, fit.score];
-        tried.push(Tried { round, set: fit.set.clone(), added, scores, criteria: [before, after], promised });
+        let taken = (here - power) / all.max(f64::MIN_POSITIVE);
+        tried.push(Tried { round, set: fit.set.clone(), added, scores, criteria: [before, after], promised, taken });
         if !is_idle && after < before {
             worthy.push((tried.len() - 1, fit));
         }
