@@ -4,6 +4,7 @@ use crate::attempt::Attempt;
 use crate::catalogue;
 use crate::diagnosis::Rival;
 use crate::error::DiagnoseError;
+use crate::excerpts;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, Fit};
 use crate::hypothesis::Hypothesis;
@@ -41,7 +42,7 @@ pub(crate) fn may_follow(built: &Built) -> bool {
 
 /// Searches along the runs that may be fitted.
 pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Course, DiagnoseError> {
-    let problem = problem(stage, plant, own, Role::Fit);
+    let problem = Problem { runs: spokesmen(stage, plant)?, ..problem(stage, plant, own, Role::Fit) };
     let mut nominal = problem.begin()?;
     let left = remainder(&problem, &nominal)?;
     stage.work.watch.step(&format!("the nominal model leaves {:.1}, noise at most {:.1}", left.rise, left.bound));
@@ -56,6 +57,46 @@ pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Cour
     let after = remainder(&problem, &found.best)?;
     Ok(Course { found, left: [left, after] })
 }
+
+/// The runs that are searched along: of many an even selection, by how many steps of a body they take.
+fn spokesmen(stage: &Stage<'_>, plant: &Plant) -> Result<Vec<usize>, DiagnoseError> {
+    let all: Vec<usize> = (0..stage.tapes.len()).filter(|r| stage.tapes[*r].role == Role::Fit).collect();
+    let bodies = plant.build(&[])?.model.owners.len() as f64;
+    let steps = |run: &usize| (stage.tapes[*run].span.1 - stage.tapes[*run].span.0) / stage.pace.step;
+    let share = SEARCHED / (bodies * all.iter().map(steps).sum::<f64>());
+    let count = ((share * all.len() as f64) as usize).max(FEWEST);
+    let chosen: Vec<usize> = excerpts::evenly(all.len(), count).into_iter().map(|i| all[i]).collect();
+    if chosen.len() < all.len() {
+        stage.work.watch.step(&format!("{} of {} runs are searched along", chosen.len(), all.len()));
+    }
+    Ok(chosen)
+}
+
+/// Steps of a body that are searched along, and runs at least: all three of an arm of seven joints are, over 12 s each.
+const SEARCHED: f64 = 1.5e5;
+const FEWEST: usize = 2;
+
+/// What was found along some runs fitted to all of them.
+pub(crate) fn told_by_all_runs(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    own: &Facts,
+    course: Course,
+) -> Result<Course, DiagnoseError> {
+    let problem = problem(stage, plant, own, Role::Fit);
+    if course.found.best.tracks.len() == problem.runs.len() {
+        return Ok(course);
+    }
+    let nominal = problem.along(&course.found.nominal, &course.found.nominal.set)?;
+    let set = course.found.best.set.clone();
+    let along = problem.along(&course.found.best, &set)?;
+    let best = if set.has_findings() { problem.fit(&along, set, ALL_RUNS)? } else { along };
+    let left = [remainder(&problem, &nominal)?, remainder(&problem, &best)?];
+    Ok(Course { found: Found { nominal, best, ..course.found }, left })
+}
+
+/// Iterations of a fit to all runs: numbers are near.
+const ALL_RUNS: Reach = Reach { iterations: 3, reuse: true };
 
 /// The runs of a role along which something is sought.
 pub(crate) fn problem<'a>(stage: &Stage<'a>, plant: &'a Plant, own: &Facts, role: Role) -> Problem<'a> {
@@ -81,7 +122,9 @@ pub(crate) fn at_suiting_steps(
     if found.pace == stage.pace {
         return Ok((course, found));
     }
-    let problem = problem(&Stage { pace: found.pace, ..*stage }, plant, own, Role::Fit);
+    let finer = Stage { pace: found.pace, ..*stage };
+    let problem =
+        Problem { runs: best.tracks.iter().map(|t| t.run).collect(), ..problem(&finer, plant, own, Role::Fit) };
     let best = problem.fit(best, best.set.clone(), LAST)?;
     let left = [course.left[0], remainder(&problem, &best)?];
     Ok((Course { found: Found { best, ..course.found }, left }, found))

@@ -20,6 +20,7 @@ mod detect;
 pub mod diagnosis;
 pub mod error;
 pub mod evidence;
+mod excerpts;
 pub mod facts;
 mod feed;
 pub mod fit;

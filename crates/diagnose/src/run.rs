@@ -14,6 +14,7 @@ use crate::curves;
 use crate::diagnosis::{Diagnosis, Explained, Rival, Verdict};
 use crate::error::DiagnoseError;
 use crate::evidence::{self, Evidence};
+use crate::excerpts;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, Effort, Fit, UNDAMPED, fit};
 use crate::hypothesis::Hypothesis;
@@ -86,6 +87,8 @@ pub fn diagnose_with(
     set: &RecordingSet,
     (effort, watch): (f64, &dyn Watch),
 ) -> Result<(Diagnosis, Evidence), DiagnoseError> {
+    let some = excerpts::of(set);
+    let set = some.as_ref().unwrap_or(set);
     // Where runs as a whole leave far more than noise, or parts touch, windows are asked as well.
     let whole = diagnose_whole(scenario.clone(), set, &Work::new(watch, ALONG * effort)).unwrap_or_else(|error| {
         watch.step(&format!("along whole runs nothing was found: {error}"));
@@ -241,6 +244,7 @@ fn diagnose_whole(
     let (course, discretisation) = along::at_suiting_steps(few, plant, &own, (course, window), discretisation)?;
     let few = &Stage { pace: discretisation.pace, ..*few };
     let stage = Stage { tapes: &tapes, ..*few };
+    let course = along::told_by_all_runs(few, plant, &own, course)?;
     let thin_best = course.found.best.clone();
     let course = along::fit_to_all((few, &stage), plant, &own, course)?;
     if work.was_ended() {

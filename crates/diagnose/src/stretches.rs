@@ -69,8 +69,15 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
         rungs.insert(0, representative(stage, &some, many).segments);
         (length, many) = (length * SHORTER, many / SHORTER);
         let segments = cut(&nominal.built, stage.tapes, Some(length), |t| t.role == Role::Fit);
-        some = fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)?;
-        stage.work.watch.step(&format!("windows of {length:.3} s: error {:.3}", some.rms()));
+        let shorter = fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)?;
+        stage.work.watch.step(&format!("windows of {length:.3} s: error {:.3}", shorter.rms()));
+        // What no window follows any better is not lost with time: the longer one shows it.
+        if many == 1.0 / SHORTER && shorter.rms() > some.rms() {
+            rungs.clear();
+            many = 1.0;
+            break;
+        }
+        some = shorter;
     }
     some = representative(stage, &some, many);
     let mut first = joined(&nominal.segments, stage.tapes);

@@ -140,7 +140,7 @@ pub fn search(
         now = without_idle(problem, best, (many, all))?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
-    found.best = simplified(problem, relaxed(problem, now, many), &known, many)?;
+    found.best = simplified(problem, relaxed(problem, now, many), &known, (many, all))?;
     Ok(found)
 }
 
@@ -512,12 +512,13 @@ fn is_as_quiet(fit: &Fitted, than: &Fitted) -> bool {
     fit.spread.noise.iter().zip(&than.spread.noise).all(|(a, b)| *a <= LOUDER * b)
 }
 
-/// The same with laws as the plainer ones that they become, where these are as good by the criterion.
+/// The same with laws as the plainer ones that they become, where these are as good by the criterion; and where much is left that no law has, of which
+/// the richer one takes less than its part: what it gains there is not what it stands for.
 fn simplified(
     problem: &Problem<'_>,
     mut now: Fitted,
     known: &[Hypothesis],
-    many: usize,
+    (many, all): (usize, f64),
 ) -> Result<Fitted, DiagnoseError> {
     for member in now.set.members.clone() {
         for (plain, x) in plainer(&member, &now.set, known) {
@@ -528,8 +529,15 @@ fn simplified(
             }
             let tried = to_the_end(problem, glance);
             let costs = criterion(&tried, many) - criterion(&now, many);
-            problem.stage.work.watch.step(&format!("  {} instead costs {costs:.1}", plain.title()));
-            if costs < 0.0 {
+            let [rich, poor] = [&now, &tried].map(|fit| problem.power(fit));
+            let part = further(poor, all).min(FURTHER[1]);
+            let takes_little = || -> Result<bool, DiagnoseError> {
+                let left = remainder(problem, &now)?;
+                Ok(left.rise > left.bound && rich > (1.0 - part) * poor)
+            };
+            let said = format!("  {} instead costs {costs:.1}, leaves {:.3} times as much", plain.title(), poor / rich);
+            problem.stage.work.watch.step(&said);
+            if costs < 0.0 || takes_little()? {
                 now = tried;
                 break;
             }

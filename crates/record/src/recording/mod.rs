@@ -166,7 +166,8 @@ impl RecordedRun {
 }
 
 impl Remark {
-    pub(crate) fn new(severity: Severity, what: impl Into<String>) -> Self {
+    /// A sentence about a whole set.
+    pub fn new(severity: Severity, what: impl Into<String>) -> Self {
         Self { run: None, channel: None, what: what.into(), severity }
     }
 

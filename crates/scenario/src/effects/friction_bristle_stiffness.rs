@@ -5,6 +5,9 @@ use super::*;
 use parameter::{AT_LEAST_ZERO, POSITIVE, nominal};
 use unit::{N_PER_M, N_S_PER_M};
 
+/// Factors of a stiffness at which it is screened as well: a bristle that is far too stiff slides at once, and does so at half its stiffness.
+const FAR: [f64; 4] = [0.02, 0.1, 0.3, 5.0];
+
 /// k and c of the bristle.
 pub static FRICTION_BRISTLE_STIFFNESS: EffectDef = EffectDef {
     name: "friction-bristle-stiffness",
@@ -28,14 +31,19 @@ pub static FRICTION_BRISTLE_STIFFNESS: EffectDef = EffectDef {
             let Some([_, k_b, c_b]) = contact.bristle else { return Vec::new() };
             let coordinates = vec![Coordinate::log("k_b", k_b, [1e-2 * k_b, 1e2 * k_b]), Coordinate::level("c_b", c_b)];
             let columns = [Along::new(0, 1e-3), Along::new(1, 1e-2 * c_b.max(1.0))];
-            vec![Candidate::new(contact.place(), coordinates).screened(&columns)]
+            let beside = Candidate::new(contact.place(), coordinates).screened(&columns);
+            let at = |candidate: Candidate, factor: &f64| {
+                let k = factor * k_b;
+                candidate.screened_at(&format!("k_b = {k:.2e}"), &[vec![k.ln(), c_b]])
+            };
+            vec![FAR.iter().fold(beside, at)]
         }),
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
         nested: None,
         start: Start::Mean,
-        minima: Minima::One,
+        minima: Minima::Several,
         concerns: Concerns::Motion,
     },
     shown: Shown::Each,

@@ -28,7 +28,7 @@ pub static JOINT_TORQUE_RIPPLE: EffectDef = EffectDef {
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
-        nested: None,
+        nested: Some(spring),
         start: Start::Mean,
         minima: Minima::One,
         concerns: Concerns::Motion,
@@ -36,6 +36,17 @@ pub static JOINT_TORQUE_RIPPLE: EffectDef = EffectDef {
     shown: Shown::Wave { amplitude: "amplitude", phase: "phase" },
     corrects: Corrects::Nothing,
 };
+
+/// Where the joint stays within a part of one wave that is a spring: A sin(n q + φ) ≈ A sin φ + A n cos φ q.
+fn spring(_: &str, x: &[f64]) -> Vec<Alternative> {
+    let [along, across, order] = [x[0], x[1], x[2]];
+    let stiffness = -order * along;
+    let is_spring = order <= LONG && stiffness > 0.0;
+    is_spring.then(|| Alternative::here(&JOINT_CABLE_STIFFNESS, vec![stiffness, across])).into_iter().collect()
+}
+
+/// Largest order of a wave that may stand for a spring.
+const LONG: f64 = 2.0;
 
 /// Orders at which a ripple is screened.
 const ORDERS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0];
