@@ -5,7 +5,7 @@
 //! numbers themselves. A step is taken if it lowers the marginal likelihood's −2 log as made linear there, and shortened where it does not.
 
 use super::forces::{Force, first_spread, forces};
-use super::marginal::{Chain, Estimate, Linear, Local, Spread, estimate, price_of_factor, score};
+use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor, score};
 use super::track::{Base, Bases, Column, Frame, Link, Side, Source, Told, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
@@ -160,19 +160,18 @@ impl<'a> Problem<'a> {
         self.refined(self.begun()?, true)
     }
 
-    /// The same with intervals of one length, shorter ones where a replay leaves the range of numbers before its samples correct it.
+    /// The same with intervals of one length.
     fn begun(&self) -> Result<Fitted, DiagnoseError> {
+        self.shorter(|knots| self.begun_in(knots))
+    }
+
+    /// What can be done with so many intervals of each run; with shorter ones where a replay leaves the range of numbers before its samples correct it.
+    fn shorter(&self, made: impl Fn(usize) -> Result<Fitted, DiagnoseError>) -> Result<Fitted, DiagnoseError> {
         if self.runs.is_empty() {
             return Err(self.lost());
         }
-        let mut begun = self.begun_in(self.knots);
-        for times in SHORTER {
-            if begun.is_ok() {
-                break;
-            }
-            begun = self.begun_in(times * self.knots);
-        }
-        begun
+        let again = SHORTER.into_iter().map(|times| times * self.knots);
+        again.fold(made(self.knots), |known, knots| known.or_else(|_| made(knots)))
     }
 
     /// The same with so many intervals of each run.
@@ -273,10 +272,12 @@ impl<'a> Problem<'a> {
 
     /// A set along other runs than those that it was fitted to, its numbers as they are.
     pub fn along(&self, of: &Fitted, set: &EffectSet) -> Result<Fitted, DiagnoseError> {
-        let mut now = self.with(&self.begun()?, set.frozen())?;
-        now.spread = Spread { local: Vec::new(), ..of.spread.clone() };
-        self.follow(&mut now)?;
-        self.settle(now, SETTLING, true)
+        self.shorter(|knots| {
+            let mut now = self.with(&self.begun_in(knots)?, set.frozen())?;
+            now.spread = Spread { local: Vec::new(), ..of.spread.clone() };
+            self.follow(&mut now)?;
+            self.settle(now, SETTLING, true)
+        })
     }
 
     /// A fit on the intervals of another one, its numbers as they are; that is what its score is compared by from there on.
@@ -318,14 +319,17 @@ impl<'a> Problem<'a> {
     /// A fit whose states follow each other: what the end of an interval exceeds the next one's state by is lost in the noise of that. Numbers converge
     /// before states do where a joint leaves its rest.
     pub fn joined(&self, mut now: Fitted) -> Result<Fitted, DiagnoseError> {
+        let mut known = now.clone();
         for _ in 0..JOININGS {
-            let made = self.linearise(&mut now, &[], false)?;
+            let Ok(made) = self.linearise(&mut now, &[], false) else { return Ok(known) };
             if made.runs.iter().all(is_joined) {
                 break;
             }
             let chains = made.chains(&[]);
             let found = estimate(&chains, None, &now.spread, STEPS[1]);
-            now.tracks = self.moved(&now, &chains, &found);
+            let tracks = self.moved(&now, &chains, &found);
+            known = now.clone();
+            now.tracks = tracks;
         }
         Ok(now)
     }
@@ -518,27 +522,6 @@ impl<'a> Problem<'a> {
         let columns =
             |(t, b): (&Track, &Bases)| Arc::new(taken.par_iter().map(|v| frame.columns(t, b, v)).collect::<Columns>());
         now.tracks.par_iter().zip(bases).map(columns).collect()
-    }
-
-    /// What the unknown forces of a fit do to the readings, and what these are off by in intervals that are not followed: mean square over intervals,
-    /// units of noise.
-    pub fn power(&self, of: &Fitted) -> f64 {
-        let own = |(interval, link): (&super::track::Interval, &Link)| -> f64 {
-            let each = interval.force.iter().zip(link.f.column_iter());
-            each.map(|(force, column)| force * force * column.norm_squared()).sum()
-        };
-        let pairs = || of.tracks.iter().zip(&of.links).flat_map(|(t, l)| t.intervals.iter().zip(l.iter()));
-        let channels = self.channels_of(&of.tracks);
-        let missed = |(run, channels): (usize, &Vec<Vec<u16>>)| -> f64 {
-            let local = of.spread.local.get(run).map_or(&[][..], Vec::as_slice);
-            let factor = |l: &DVector<f64>, c: usize| if l[c] > 1.0 { l[c] * of.spread.noise[c] } else { 1.0 };
-            let excess = |(own, l): (&Vec<u16>, &Local)| -> f64 {
-                own.iter().map(|c| factor(&l.noise, *c as usize).powi(2) - 1.0).sum()
-            };
-            channels.iter().zip(local).map(excess).sum()
-        };
-        let missed: f64 = channels.iter().enumerate().map(missed).sum();
-        (pairs().map(own).sum::<f64>() + missed) / pairs().count().max(1) as f64
     }
 
     /// The runs of a fit with their states where the smoother has them.

@@ -8,4 +8,5 @@ pub mod chain;
 pub mod fit;
 pub mod forces;
 pub mod marginal;
+mod power;
 pub mod track;

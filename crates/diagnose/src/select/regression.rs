@@ -1,7 +1,7 @@
 //! Regression of the missing force on what every hypothesis would make of it.
 //!
 //! A smoother finds the force f that lacks on every coordinate of every interval, whatever it comes from. What a hypothesis does within an interval is a force
-//! as well, W = (FᵀF)⁻¹FᵀY, and
+//! as well, W = (FᵀF + Q⁻¹)⁻¹FᵀY with the smoother's variances Q, by which neither is a force that hardly shows, and
 //!
 //!   f = W θ + ε,   ε ~ t₄ of a scale of its own for each coordinate      (Lange, Little and Taylor 1989; reweighted least squares)
 //!
@@ -49,21 +49,25 @@ const TAILS: f64 = 4.0;
 const STEPS: usize = 12;
 /// Share of all that is missing by which columns may be off on any coordinate: less is not told apart.
 const OFF: f64 = 0.03;
-/// Share of the diagonal that keeps forces which nothing shows from becoming anything.
-const RIDGE: f64 = 1e-6;
+/// Largest inverse of a force's variance.
+const LARGEST: f64 = 1e30;
 /// Sets that grow, and entries that they grow by.
 const GROWN: usize = 3;
 const TAKING_PART: usize = 30;
 
 impl<'a> Regression<'a> {
-    /// Of some runs with their smoothed forces; the columns of the pool begin at `first`.
-    pub fn new((pool, scale): (&'a Pool, &'a Scale), runs: &[Linear], first: usize, smoothed: &[Smoothed]) -> Self {
+    /// Of some runs with their smoothed forces, whose standard deviations are `force`; the columns of the pool begin at `first`.
+    pub fn new(
+        (pool, scale): (&'a Pool, &'a Scale),
+        (runs, first): (&[Linear], usize),
+        (smoothed, force): (&[Smoothed], &DVector<f64>),
+    ) -> Self {
         let columns = pool.columns();
         let of_run = |run: &Linear| {
             let of_interval = |i: usize| {
                 let f = &run.links[i].f;
                 let mut gram = f.tr_mul(f);
-                (0..gram.nrows()).for_each(|k| gram[(k, k)] += RIDGE * gram[(k, k)] + f64::MIN_POSITIVE);
+                (0..gram.nrows()).for_each(|k| gram[(k, k)] += force[k].powi(-2).min(LARGEST));
                 let told = f.tr_mul(&run.sides[i].y.columns(first, columns));
                 gram.cholesky().map_or_else(|| told.clone() * 0.0, |c| c.solve(&told))
             };
@@ -238,7 +242,8 @@ mod tests {
         let start = DVector::from_element(1, 1.0);
         let runs = vec![Linear { run: 0, price: 30.0, links: Arc::new(links), sides, channels: Vec::new(), start }];
         let smoothed = Smoothed { forces, variances, ..Smoothed::default() };
-        Regression::new((&pool(), &Scale::default()), &runs, 0, &[smoothed]).grow(3)
+        Regression::new((&pool(), &Scale::default()), (&runs, 0), (&[smoothed], &DVector::from_element(JOINTS, 1.0)))
+            .grow(3)
     }
 
     #[test]

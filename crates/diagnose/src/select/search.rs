@@ -391,7 +391,8 @@ fn look(problem: &Problem<'_>, now: &mut Fitted, all: Vec<Hypothesis>, most: usi
     let none = estimate(&chains, Some(&ridge), &now.spread, 2);
     let smoothed: Vec<_> = chains.iter().map(|chain| chain.smoothed(&none.spread, &none.theta)).collect();
     let scale = Scale::new(problem, now, &pool, &smoothed, &none.spread);
-    let spoken = Regression::new((&pool, &scale), &made.runs, slots.len(), &smoothed).grow(most);
+    let spoken =
+        Regression::new((&pool, &scale), (&made.runs, slots.len()), (&smoothed, &none.spread.force)).grow(most);
     let (active, count) = (slots.len(), made.count);
     let ground = Ground { runs: &made.runs, ridge: &ridge, pool: &pool, scale: &scale, active, count };
     let mut grown = ground.grow(&none, most);
