@@ -106,7 +106,7 @@ fn clean_reading(run: &RecordedRun, reading: &Reading, said: &mut LeftOut) -> Op
     let series_of = |axis: &usize| {
         let part = if is_orientation { ["w", "x", "y", "z"][*axis] } else { ["x", "y", "z"][*axis] };
         let series = run.series(&reading.channel).or_else(|| run.series(&format!("{}.{part}", reading.channel)));
-        series.filter(|s| s.times == reading.times)
+        series.filter(|s| s.times[..] == reading.times[..])
     };
     let series: Vec<&Series> = parts.iter().map(series_of).collect::<Option<_>>()?;
     // About an axis a turn is twice as large as it is in the quaternion.

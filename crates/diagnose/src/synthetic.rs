@@ -76,7 +76,8 @@ fn white(random: &mut ChaCha8Rng, sigma: f64) -> Vec3 {
 /// A series as the readings of its channel make it; commands and drives as they are.
 fn read_as(series: &Series, tape: &Tape, values: &[Vec<Value>]) -> Series {
     let reads = |(reading, values): (&crate::reading::Reading, &Vec<Value>)| {
-        let part = series.channel.strip_prefix(reading.channel.as_str()).filter(|_| reading.times == series.times)?;
+        let part =
+            series.channel.strip_prefix(reading.channel.as_str()).filter(|_| reading.times[..] == series.times[..])?;
         let read = |value: &Value| value.component(part.strip_prefix('.').unwrap_or(""));
         values.iter().map(read).collect::<Option<Vec<f64>>>()
     };

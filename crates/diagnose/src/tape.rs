@@ -86,7 +86,7 @@ impl Tape {
             if let Some(found) = plant.actuator(model, beside.as_deref().unwrap_or(&series.channel)) {
                 let (actuator, unit) = found.map_err(refuse)?;
                 let efforts = series.values.iter().map(|v| v * unit).collect();
-                commands.push(CommandTape { actuator, times: series.times.clone(), efforts });
+                commands.push(CommandTape { actuator, times: series.times.to_vec(), efforts });
                 continue;
             }
             let (prefix, component) = split_component(&series.channel);
@@ -213,7 +213,7 @@ fn readings_of(set: &RecordingSet, prefix: &str, quantity: Quantity, group: &[(u
         let times = part[0].1.times.clone();
         let values = (0..times.len()).map(|i| value_at(part, i, orientation)).collect();
         let axes = if orientation { vec![0, 1, 2] } else { part.iter().map(|(k, _)| *k).collect() };
-        Reading { channel: prefix.to_owned(), quantity, axes, sigma, times, values }
+        Reading { channel: prefix.to_owned(), quantity, axes, sigma, times: times.to_vec(), values }
     };
     parts.iter().filter(|p| !is_orientation(&quantity) || p.len() == 4).map(of_part).collect()
 }

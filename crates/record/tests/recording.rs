@@ -28,8 +28,8 @@ fn channels_of_several_rates_come_apart() {
     let names: Vec<&str> = run.series.iter().map(|s| s.channel.as_str()).collect();
     assert_eq!(names, ["joint.a.position", "joint.b.position"], "sorted");
     let b = run.series("joint.b.position").unwrap();
-    assert_eq!((b.times.as_slice(), b.values.as_slice()), (&[0.0, 1.0, 2.0][..], &[1.0, 2.0, 3.0][..]));
-    assert_eq!(run.series("joint.a.position").unwrap().times, [0.0, 0.5, 1.0, 2.0]);
+    assert_eq!((&b.times[..], b.values.as_slice()), (&[0.0, 1.0, 2.0][..], &[1.0, 2.0, 3.0][..]));
+    assert_eq!(run.series("joint.a.position").unwrap().times[..], [0.0, 0.5, 1.0, 2.0]);
     assert_eq!(run.duration(), 2.0);
     assert!(run.series("joint.c.position").is_none());
 }
@@ -41,7 +41,7 @@ fn parquet_and_csv_give_the_same_set() {
     let series = &from_csv.runs[0].series;
     let channel =
         |s: &Series| Channel { spec: ChannelSpec::new(&s.channel, "", Plot::Joints), values: s.values.clone() };
-    let signals = Signals { times: series[0].times.clone(), channels: series.iter().map(channel).collect() };
+    let signals = Signals { times: series[0].times.to_vec(), channels: series.iter().map(channel).collect() };
     let bytes = record::encode_parquet(&Meta::default(), &signals).unwrap();
     let from_parquet = load(
         exact(&format!("{JOINT}[[run]]\nfile = \"a.parquet\"\nrole = \"fit\"\n"), &[("a.parquet", &bytes)]).path(),
@@ -61,7 +61,7 @@ fn foreign_columns_are_mapped_scaled_and_converted() {
     let set = load(exact(&toml, &[("a.csv", csv.as_bytes())]).path());
     let run = &set.runs[0];
     let x = run.series("joint.slide.position").unwrap();
-    assert_eq!(x.times, [0.0, 0.01, 0.02]);
+    assert_eq!(x.times[..], [0.0, 0.01, 0.02]);
     assert!((x.values[1] - 0.0127).abs() < 1e-15 && (x.quantum() - 1e-4).abs() < 1e-15, "{x:?}");
     assert_eq!(run.series("joint.slide.effort_command").unwrap().values, [2.0 * 35.15065188, 35.15065188]);
     assert_eq!(run.series("body.cube.angular_velocity.x").unwrap().values[0], -std::f64::consts::PI);
@@ -76,7 +76,7 @@ fn groups_become_runs_with_roles_of_their_own() {
     );
     let csv = "toss,t,joint.a.position\n0,0,1\n0,1,2\n1,5,3\n1,6,4\n7,0,5\n7,1,6\n8,0,7\n8,1,8\n";
     let set = load(exact(&toml, &[("a.csv", csv.as_bytes())]).path());
-    let runs: Vec<_> = set.runs.iter().map(|r| (r.file.as_str(), r.role, r.series[0].times.as_slice())).collect();
+    let runs: Vec<_> = set.runs.iter().map(|r| (r.file.as_str(), r.role, &r.series[0].times[..])).collect();
     assert_eq!(
         runs,
         [
@@ -189,8 +189,12 @@ fn rounding_is_found_in_decimals_and_encoder_steps() {
     let mut noise = Noise::new(1);
     let truth: Vec<f64> = (0..2000).map(|i| 0.02 * (f64::from(i) * 0.003).sin() + 2e-5 * noise.normal()).collect();
     let of = |round: &dyn Fn(f64) -> f64| {
-        Series::new("joint.a.position", (0..2000).map(f64::from).collect(), truth.iter().map(|v| round(*v)).collect())
-            .quantum()
+        Series::new(
+            "joint.a.position",
+            (0..2000).map(f64::from).collect::<Vec<_>>(),
+            truth.iter().map(|v| round(*v)).collect(),
+        )
+        .quantum()
     };
     let decimals = |v: f64, k: i32| format!("{v:.*}", k as usize).parse::<f64>().unwrap();
     assert_eq!(of(&|v| v), 0.0, "continuous");
@@ -338,7 +342,7 @@ proptest! {
         if let Ok(set) = RecordingSet::load(dir.path()) {
             for series in &set.runs[0].series {
                 prop_assert!(series.times.windows(2).all(|t| t[0] < t[1]), "{:?}", series.times);
-                prop_assert!(series.values.iter().chain(&series.times).all(|v| v.is_finite()));
+                prop_assert!(series.values.iter().chain(series.times.iter()).all(|v| v.is_finite()));
                 prop_assert_eq!(series.times.len(), series.values.len());
                 prop_assert!(series.quantum() >= 0.0 && series.quantum().is_finite());
             }

@@ -93,7 +93,7 @@ fn together(run: &RecordedRun, channels: &[String]) -> Option<(Vec<f64>, Vec<[f6
     let first = series.first()?;
     let mut at = vec![0_usize; series.len()];
     let (mut times, mut rows) = (Vec::new(), Vec::new());
-    for t in &first.times {
+    for t in first.times.iter() {
         let mut row = [0.0; 4];
         let mut whole = true;
         for ((one, at), cell) in series.iter().zip(&mut at).zip(&mut row) {

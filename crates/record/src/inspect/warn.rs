@@ -70,7 +70,7 @@ fn clocks(run: &RecordedRun) -> Vec<Remark> {
     let mut remarks = Vec::new();
     let mut seen: Vec<&[f64]> = Vec::new();
     for series in &run.series {
-        if seen.contains(&series.times.as_slice()) {
+        if seen.contains(&&series.times[..]) {
             continue;
         }
         seen.push(&series.times);

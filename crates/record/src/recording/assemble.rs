@@ -10,6 +10,7 @@ use super::time::{self, Merge, Timeline};
 use super::{RecordedRun, RecordingSet, Remark, Series, Severity, orientation};
 use crate::RecordError;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A clock that starts later than this, s, counts from an epoch and not from the run's start.
 const EPOCH: f64 = 1e6;
@@ -193,6 +194,8 @@ fn read_stretch(
                 merged += again;
                 let step = find_quantum(&values_of(&timeline, source.values)) * source.factor.abs();
                 let values = values.into_iter().map(|v| v * source.factor).collect();
+                let known = series.last().map(|s: &Series| &s.times).filter(|known| known[..] == times[..]);
+                let times = known.map_or_else(|| times.into(), Arc::clone);
                 series.push(Series::with_quantum(source.channel, times, values, step));
             }
         }
@@ -257,8 +260,9 @@ fn add_orientations(
         // One rounding for all four: a component that hardly moves does not show its own.
         let steps = sources.map(|s| find_quantum(&values_of(timeline, s.values)) * s.factor.abs());
         let step = steps.into_iter().fold(0.0, f64::max);
+        let times: Arc<[f64]> = read.times.into();
         for (source, values) in sources.into_iter().zip(read.parts) {
-            series.push(Series::with_quantum(source.channel, read.times.clone(), values, step));
+            series.push(Series::with_quantum(source.channel, Arc::clone(&times), values, step));
         }
     }
     merged

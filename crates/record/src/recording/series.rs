@@ -1,14 +1,15 @@
 //! One channel of one run: the instants where it was sampled, and what was read there.
 
 use super::quantum::find_quantum;
+use std::sync::Arc;
 
 /// A channel with only the instants where it was sampled. Times strictly increase; values are finite and in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     /// Name by the recording format, `joint.elbow.position`.
     pub channel: String,
-    /// Instants, s.
-    pub times: Vec<f64>,
+    /// Instants, s; channels that are sampled together share them.
+    pub times: Arc<[f64]>,
     /// Values; orientation components are those of a unit quaternion that does not flip.
     pub values: Vec<f64>,
     quantum: f64,
@@ -16,14 +17,19 @@ pub struct Series {
 
 impl Series {
     /// A series whose written rounding is found from its values.
-    pub fn new(channel: impl Into<String>, times: Vec<f64>, values: Vec<f64>) -> Self {
+    pub fn new(channel: impl Into<String>, times: impl Into<Arc<[f64]>>, values: Vec<f64>) -> Self {
         let quantum = find_quantum(&values);
         Self::with_quantum(channel, times, values, quantum)
     }
 
     /// A series whose written rounding is known; it survives what is done to the values (units, normalisation).
-    pub fn with_quantum(channel: impl Into<String>, times: Vec<f64>, values: Vec<f64>, quantum: f64) -> Self {
-        Self { channel: channel.into(), times, values, quantum }
+    pub fn with_quantum(
+        channel: impl Into<String>,
+        times: impl Into<Arc<[f64]>>,
+        values: Vec<f64>,
+        quantum: f64,
+    ) -> Self {
+        Self { channel: channel.into(), times: times.into(), values, quantum }
     }
 
     /// The written rounding q, in the channel's unit; 0 where the values are continuous.
