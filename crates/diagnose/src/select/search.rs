@@ -223,7 +223,7 @@ fn fit_sets(
     let mut worthy: Vec<(usize, Fitted)> = Vec::new();
     let mut enough: Vec<Vec<String>> = Vec::new();
     let mut smaller: Vec<Smaller> = Vec::new();
-    let pool = &looked.pool;
+    let (pool, watch) = (&looked.pool, problem.stage.work.watch);
     let (mut done, mut refuted): (Vec<Vec<String>>, Vec<Vec<String>>) = Default::default();
     while let Some(set) = next_of(proposals(looked, now, &refuted), pool, &done) {
         if done.len() == ALL_FITTED || problem.stage.work.is_spent(Until::Search) {
@@ -235,7 +235,8 @@ fn fit_sets(
         if enough.iter().any(|known| known.iter().all(|t| added.contains(t))) {
             continue;
         }
-        let Ok(fit) = fit_first(problem, now, &set, pool) else {
+        let fit = fit_first(problem, now, &set, pool);
+        let Ok(fit) = fit.inspect_err(|error| watch.step(&format!("  {}: {error}", added.join("; ")))) else {
             refuted.push(added);
             continue;
         };
@@ -247,9 +248,9 @@ fn fit_sets(
         let after = criterion(&fit, many);
         let (promised, brought) = (now.score - set.score, now.score - fit.score);
         let left = remainder(problem, &fit)?;
-        let (names, power, gain) = (names(&fit.set), problem.power(&fit), after - before);
-        let gains = format!("promised {promised:.1}, brought {brought:.1}, criterion {gain:.1}");
-        problem.stage.work.watch.step(&format!("  {names}: {gains}, {:.3} % left", 100.0 * power / here));
+        let (names, power) = (names(&fit.set), problem.power(&fit));
+        let gains = format!("promised {promised:.1}, brought {brought:.1}, criterion {:.1}", after - before);
+        watch.step(&format!("  {names}: {gains}, {:.3} % left", 100.0 * power / here));
         if brought < REFUTED * promised {
             refuted.push(added.clone());
         }
@@ -262,8 +263,7 @@ fn fit_sets(
         };
         let is_idle = smaller.iter().any(is_idle);
         smaller.push(Smaller { titles: added.clone(), power });
-        let scores = [now.score, fit.score];
-        let taken = (here - power) / all.max(f64::MIN_POSITIVE);
+        let (scores, taken) = ([now.score, fit.score], (here - power) / all.max(f64::MIN_POSITIVE));
         tried.push(Tried { round, set: fit.set.clone(), added, scores, criteria: [before, after], promised, taken });
         if !is_idle && after < before {
             worthy.push((tried.len() - 1, fit));
