@@ -221,10 +221,9 @@ fn fit_sets(
     let mut finer: Fitted;
     let (before, here) = (criterion(now, many), problem.power(now));
     let mut worthy: Vec<(usize, Fitted)> = Vec::new();
-    let mut enough: Vec<Vec<String>> = Vec::new();
     let mut smaller: Vec<Smaller> = Vec::new();
     let (pool, watch) = (&looked.pool, problem.stage.work.watch);
-    let (mut done, mut refuted): (Vec<Vec<String>>, Vec<Vec<String>>) = Default::default();
+    let [mut done, mut refuted, mut enough] = [const { Vec::<Vec<String>>::new() }; 3];
     while let Some(set) = next_of(proposals(looked, now, &refuted), pool, &done) {
         if done.len() == ALL_FITTED || problem.stage.work.is_spent(Until::Search) {
             break;
