@@ -163,10 +163,10 @@ pub(crate) fn windows(
     fitted: &Fitted,
 ) -> Result<Fit, DiagnoseError> {
     let left_out = problem(stage, plant, own, Role::Holdout);
-    let joined = |fit: Fitted| if fitted.set.has_findings() { left_out.joined(fit) } else { Ok(fit) };
-    let mut fits = vec![joined(fitted.clone())?];
+    let joined = |fit: Fitted| if fitted.set.has_findings() { left_out.joined(fit) } else { fit };
+    let mut fits = vec![joined(fitted.clone())];
     if !left_out.runs.is_empty() {
-        fits.push(joined(left_out.along(fitted, &fitted.set)?)?);
+        fits.push(joined(left_out.along(fitted, &fitted.set)?));
     }
     let segments = fits.iter().flat_map(|f| windows_of(&left_out, f, window)).collect();
     Ok(as_fit(stage, fitted, segments))

@@ -30,7 +30,7 @@ pub(crate) fn of(set: &RecordingSet) -> Option<RecordingSet> {
         }
         let parts: Vec<(&RecordedRun, [usize; 2])> =
             own.flat_map(|run| parts(run).map(move |part| (run, part))).collect();
-        let chosen = evenly(parts.len(), (ROWS / EXCERPT).max(1));
+        let chosen = evenly(parts.len(), ROWS / EXCERPT);
         let (many, count) = (rows(role), chosen.len());
         let what =
             format!("its {} runs have {many} instants: {count} excerpts, evenly spread, speak for all", role.key());
@@ -67,7 +67,7 @@ fn excerpt(run: &RecordedRun, [first, end]: [usize; 2]) -> RecordedRun {
     let (from, to) = (clock.times[first], clock.times[end - 1]);
     let within = |s: &Series| {
         let range = s.times.partition_point(|t| *t < from)..s.times.partition_point(|t| *t <= to);
-        Series::with_quantum(&s.channel, s.times[range.clone()].to_vec(), s.values[range].to_vec(), s.quantum())
+        Series::with_quantum(&s.channel, &s.times[range.clone()], s.values[range].to_vec(), s.quantum())
     };
     RecordedRun {
         file: format!("{} {from:.2}–{to:.2} s", run.file),

@@ -47,6 +47,14 @@ pub struct Discretisation {
     pub worst: f64,
 }
 
+impl Discretisation {
+    /// Steps, and what halving them moves.
+    pub fn words(&self) -> String {
+        let (Pace { step, free, .. }, worst) = (self.pace, self.worst);
+        format!("steps of {step:.3e} s, {free:.3e} s in free flight: halving moves {worst:.1e}")
+    }
+}
+
 /// The coarsest steps whose halves tell the same; `own` is the step below which half and quarter are the last that are tried, s.
 pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> Discretisation {
     let every = segments.len().div_ceil(WINDOWS).max(1);
@@ -119,9 +127,7 @@ pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment], tolerance: f64
 /// Steps that suit a corrected model where so many scalars are told in some segments, said.
 pub(crate) fn suited(stage: &Stage<'_>, (built, segments): (&Built, &[Segment]), count: usize) -> Discretisation {
     let found = refine(stage, built, segments, tolerance_of(count));
-    let (Pace { step, free, .. }, worst) = (found.pace, found.worst);
-    let said = format!("steps of {step:.3e} s, {free:.3e} s in free flight: halving moves {worst:.1e}");
-    stage.work.watch.step(&said);
+    stage.work.watch.step(&found.words());
     found
 }
 

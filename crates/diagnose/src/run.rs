@@ -453,9 +453,7 @@ fn begin(
 /// Steps for a model in some windows, said.
 fn chosen(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> Discretisation {
     let found = pace::choose(stage, built, segments, own);
-    let (Pace { step, free, .. }, worst) = (found.pace, found.worst);
-    let said = format!("steps of {step:.3e} s, {free:.3e} s in free flight: halving moves {worst:.1e}");
-    stage.work.watch.step(&said);
+    stage.work.watch.step(&found.words());
     found
 }
 

@@ -6,6 +6,7 @@
 
 use crate::approaches::{Flight, begin, find_flights, is_sustained};
 use crate::error::DiagnoseError;
+use crate::excerpts::evenly;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::guess::guess;
 use crate::linear::{Segment, Stage, Steps, windows};
@@ -72,7 +73,7 @@ pub(crate) fn choose(stage: &Stage<'_>, plant: &Plant, nominal: &Fit, window: f6
         let shorter = fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)?;
         stage.work.watch.step(&format!("windows of {length:.3} s: error {:.3}", shorter.rms()));
         // What no window follows any better is not lost with time: the longer one shows it.
-        if many == 1.0 / SHORTER && shorter.rms() > some.rms() {
+        if rungs.len() == 1 && shorter.rms() > some.rms() {
             rungs.clear();
             many = 1.0;
             break;
@@ -161,7 +162,7 @@ pub(crate) fn spokesmen(excesses: &[f64], (worst, even): (usize, usize)) -> Vec<
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|a, b| excesses[*b].total_cmp(&excesses[*a]));
     order.truncate(worst);
-    order.extend((0..even.min(count)).map(|k| (2 * k + 1) * count / (2 * even.min(count))));
+    order.extend(evenly(count, even));
     order.sort_unstable();
     order.dedup();
     order

@@ -317,21 +317,20 @@ impl<'a> Problem<'a> {
     }
 
     /// A fit whose states follow each other: what the end of an interval exceeds the next one's state by is lost in the noise of that. Numbers converge
-    /// before states do where a joint leaves its rest.
-    pub fn joined(&self, mut now: Fitted) -> Result<Fitted, DiagnoseError> {
-        let mut known = now.clone();
+    /// before states do where a joint leaves its rest. As it was where a replay from there leaves the range of numbers.
+    pub fn joined(&self, mut now: Fitted) -> Fitted {
+        let mut known = now.tracks.clone();
         for _ in 0..JOININGS {
-            let Ok(made) = self.linearise(&mut now, &[], false) else { return Ok(known) };
+            let Ok(made) = self.linearise(&mut now, &[], false) else { return Fitted { tracks: known, ..now } };
             if made.runs.iter().all(is_joined) {
                 break;
             }
             let chains = made.chains(&[]);
             let found = estimate(&chains, None, &now.spread, STEPS[1]);
-            let tracks = self.moved(&now, &chains, &found);
-            known = now.clone();
-            now.tracks = tracks;
+            let moved = self.moved(&now, &chains, &found);
+            known = std::mem::replace(&mut now.tracks, moved);
         }
-        Ok(now)
+        now
     }
 
     /// A set fitted, from where another one stands.
