@@ -116,6 +116,17 @@ impl EffectSet {
         set
     }
 
+    /// The set with all free that its members hold in reserve, where it leads astray; none where they hold nothing.
+    pub fn released(&self) -> Option<Self> {
+        let mut free = self.clone();
+        for (at, member) in free.members.iter_mut().enumerate() {
+            let Some(released) = member.0.relaxed_afar(&member.1) else { continue };
+            free.held.retain(|(m, k)| *m != at || released.0.held.contains(k));
+            *member = released;
+        }
+        self.members.iter().any(|(h, _)| !h.reserve.is_empty()).then_some(free)
+    }
+
     /// The set with every number held.
     pub fn frozen(&self) -> Self {
         Self { held: self.slots().into_iter().chain(self.held.iter().copied()).collect(), ..self.clone() }

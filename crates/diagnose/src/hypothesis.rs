@@ -8,7 +8,7 @@ use scenario::effects::identify::{Concerns, Minima, Start};
 use scenario::spec::{Effect, ParamValue};
 use std::collections::BTreeMap;
 
-pub use scenario::effects::candidate::{Candidate, Column, Coordinate, Encoding, Scale, ScreenPoint};
+pub use scenario::effects::candidate::{Begin, Candidate, Column, Coordinate, Encoding, Scale, ScreenPoint};
 pub use scenario::effects::identify::{Alternative, Tier};
 
 /// An effect at a place.
@@ -33,7 +33,7 @@ pub struct Hypothesis {
     /// Coordinates that no data of this kind can show, or that are in reserve; they stay at neutral.
     pub held: Vec<usize>,
     /// Those of them that may be freed, see [`Self::relaxed`].
-    pub reserve: Vec<(usize, f64)>,
+    pub reserve: Vec<(usize, Begin)>,
     /// Whether its screen is expensive: many points, or memory whose start is free too.
     pub is_dear: bool,
     /// Standard deviations of the coordinates where the scenario gives them a tolerance; empty for a finding.
@@ -94,12 +94,21 @@ impl Hypothesis {
         }
     }
 
-    /// The same with the coordinates free that it has in reserve, and where they begin beside `x`; none where it has none.
+    /// The same with the coordinates free that it has in reserve, and where they begin beside `x` that is nearly right; none where it has none.
     pub fn relaxed(&self, x: &[f64]) -> Option<(Self, Vec<f64>)> {
+        self.released(x, |begin| begin.near)
+    }
+
+    /// The same beside `x` that leads astray.
+    pub fn relaxed_afar(&self, x: &[f64]) -> Option<(Self, Vec<f64>)> {
+        self.released(x, |begin| begin.afar)
+    }
+
+    fn released(&self, x: &[f64], at: fn(&Begin) -> f64) -> Option<(Self, Vec<f64>)> {
         let (mut free, mut x) = (Self { reserve: Vec::new(), ..self.clone() }, x.to_vec());
-        for (k, start) in &self.reserve {
+        for (k, begin) in &self.reserve {
             free.held.retain(|held| held != k);
-            x[*k] = *start;
+            x[*k] = at(begin);
         }
         (!self.reserve.is_empty()).then_some((free, x))
     }

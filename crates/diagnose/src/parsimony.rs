@@ -4,11 +4,12 @@
 //! further numbers on what no law of the library takes away. Both go here, by the criterion of the search.
 
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Effort, fit};
+use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::{Alternative, Hypothesis};
 use crate::linear::Stage;
 use crate::plant::Plant;
 use crate::search::{LOOK, TIE, WHOLE, errors};
+use crate::select::search::{FURTHER, further};
 use crate::standing::{Standing, criterion};
 use crate::work::Until;
 
@@ -20,9 +21,6 @@ const NECESSARY: f64 = 1.3;
 const PLAINER: f64 = 2.0;
 /// Cost, as a share of what noise leaves, by which it may predict worse and still be as good: a four-hundredth of the noise.
 const AS_GOOD: f64 = 0.005;
-/// The same as a share of what neither law takes away: what a model leaves that is not in the library is no noise, and a criterion that takes it
-/// for such is sure of anything (ĉ of Burnham and Anderson 2002, ch. 2.5). Chosen, not measured.
-const OF_THE_REST: f64 = 0.1;
 
 /// Puts one member in the place of all where it does alone what they do together: a law that came first as the synonym of a later one has
 /// others beside it that mend what it is not.
@@ -109,16 +107,21 @@ pub(crate) fn simplify(
     for member in 0..now.judge().set.members.len() {
         for (plain, x) in plainer(&now.judge().set.members[member], &now.judge().set, all) {
             let set = now.judge().set.without(member).with(&plain, &x);
-            let near = fit(stage, plant, set.clone(), now.judge().segments.clone(), GLANCE)?;
-            if near.rms() > PLAINER * now.judge().rms() {
+            let is_far = |near: &Fit| near.rms() > PLAINER * now.judge().rms();
+            let of = |set: &EffectSet, effort| fit(stage, plant, set.clone(), now.judge().segments.clone(), effort);
+            let near = of(&set, GLANCE)?;
+            let released = is_far(&near).then(|| set.released()).flatten();
+            // What a plainer law cannot do without it may do with what it holds in reserve.
+            let near = released.map_or(Ok(near), |free| of(&free, LOOK))?;
+            if is_far(&near) {
                 continue;
             }
-            let tried = now.refit(stage, plant, set, LOOK)?;
+            let tried = now.refit(stage, plant, near.set, LOOK)?;
             let costs = criterion(tried.judge()) - criterion(now.judge());
             stage.work.watch.step(&format!("{} instead costs {costs:.1}", plain.title()));
-            let spare = (AS_GOOD * now.judge().noise).max(OF_THE_REST * now.judge().excess());
-            let is_as_good = tried.is_comparable(&now) && costs < spare.min(TIE * brought);
-            if is_as_good || !now.is_better(&tried) {
+            let is_as_good =
+                costs < (AS_GOOD * now.judge().noise).min(TIE * brought) || takes_little(&now, &tried, brought);
+            if is_as_good && tried.is_comparable(&now) || !now.is_better(&tried) {
                 stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
                 now = tried;
                 break;
@@ -126,4 +129,12 @@ pub(crate) fn simplify(
         }
     }
     Ok(now)
+}
+
+/// Whether a law takes less than its part of what its plainer kind leaves, where both leave what is no noise: what a model leaves that is not in the library
+/// is none, and a criterion that takes it for such is sure of anything (ĉ of Burnham and Anderson 2002, ch. 2.5).
+fn takes_little(rich: &Standing, plain: &Standing, brought: f64) -> bool {
+    let [rich, poor] = [rich, plain].map(Standing::judge);
+    let part = further(poor.excess(), brought + rich.excess()).min(FURTHER[1]);
+    rich.is_significant() && rich.excess() > (1.0 - part) * poor.excess()
 }

@@ -8,7 +8,7 @@ use crate::identify::fit::{Fitted, Problem};
 use crate::standing::told;
 
 /// Share of the missing force that a law leaves which is so but for a detail.
-const NEARLY: f64 = 0.05;
+const NEARLY: f64 = 0.25;
 
 /// A fit whose law takes nearly all of the missing force away and is no likelier for it, which is so but for a detail: on intervals that suit it, and with
 /// what it holds in reserve. First the fit that it was begun with on the same intervals, where these are others.

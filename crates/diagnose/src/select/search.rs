@@ -57,7 +57,7 @@ const MOST: usize = 6;
 const AT_ONCE: usize = 3;
 /// Share of what the unknown forces do that one more effect has to take; and where less than a hundredth of that is left, which may be what the found
 /// laws are off by themselves.
-const FURTHER: [f64; 2] = [0.2, 0.75];
+pub(crate) const FURTHER: [f64; 2] = [0.2, 0.75];
 const SMALL: f64 = 0.01;
 /// Share of what the unknown forces do (their power) that may be what steps and difference quotients make of the laws that were found.
 const OWN: f64 = 1e-5;
@@ -76,9 +76,9 @@ const SPOKEN: usize = 2;
 const PROMISING: f64 = 0.6;
 const REFUTED: f64 = 0.1;
 /// Iterations of a first fit, and to the end.
-pub(super) const LOOK: Reach = Reach { iterations: 6, reuse: true };
-const GLANCE: Reach = Reach { iterations: 3, reuse: true };
-const END: Reach = Reach { iterations: 6, reuse: false };
+pub(super) const LOOK: Reach = Reach { iterations: 6, reuse: true, anew: false };
+const GLANCE: Reach = Reach { iterations: 3, reuse: true, anew: false };
+const END: Reach = Reach { iterations: 6, reuse: false, anew: true };
 /// Most times that a fit is followed anew to its end, and fall of −2 log likelihood that is worth another time.
 const ENDS: usize = 5;
 const WORTH: f64 = 3.0;
@@ -106,8 +106,8 @@ pub fn search(
     let watch = problem.stage.work.watch;
     let mut now = nominal.clone();
     let mut found = Found { nominal, best: now.clone(), tried: Vec::new(), shown: Vec::new(), left: 0.0 };
-    let mut known = hypotheses(&now)?;
-    let many = known.len();
+    let first = hypotheses(&now)?;
+    let (mut known, many) = (first.clone(), first.len());
     let all = problem.power(&now);
     for round in 0..MOST {
         let room = MOST.saturating_sub(now.set.findings().count());
@@ -140,6 +140,8 @@ pub fn search(
         now = without_idle(problem, best, (many, all))?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
+    // A joint that yields by now is no more one that may begin to, and yet that is what a joint with play becomes.
+    known.extend(first);
     found.best = simplified(problem, relaxed(problem, now, many), &known, (many, all))?;
     Ok(found)
 }
@@ -184,7 +186,7 @@ fn corrected(
 }
 
 /// Share of what unknown forces do beside a set that one more effect has to take.
-fn further(beside: f64, all: f64) -> f64 {
+pub(crate) fn further(beside: f64, all: f64) -> f64 {
     if beside < OWN * all {
         return 1.0;
     }
@@ -234,7 +236,7 @@ fn fit_sets(
         if enough.iter().any(|known| known.iter().all(|t| added.contains(t))) {
             continue;
         }
-        let fit = fit_first(problem, now, &set, pool);
+        let fit = fit_first(problem, now, &set, pool, many);
         let Ok(fit) = fit.inspect_err(|error| watch.step(&format!("  {}: {error}", added.join("; ")))) else {
             refuted.push(added);
             continue;
@@ -277,9 +279,17 @@ fn fit_first(
     now: &Fitted,
     Proposal { members, spread, .. }: &Proposal,
     pool: &Pool,
+    many: usize,
 ) -> Result<Fitted, DiagnoseError> {
-    let members = members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
-    problem.fit(&Fitted { spread: spread.clone(), ..now.clone() }, members, LOOK)
+    let begun = Fitted { spread: spread.clone(), ..now.clone() };
+    let set = members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
+    let fit = problem.fit(&begun, set.clone(), LOOK)?;
+    if criterion(&fit, many) < criterion(now, many) {
+        return Ok(fit);
+    }
+    // A law that leads astray may do so for a detail that it holds in reserve.
+    let free = set.released().and_then(|free| problem.fit(&begun, free, LOOK).ok());
+    Ok(free.filter(|free| criterion(free, many) < criterion(&fit, many)).unwrap_or(fit))
 }
 
 /// The first proposal that was not fitted yet.
@@ -468,11 +478,13 @@ fn siblings(looked: &Looked, now: &Fitted, single: &LinearSet) -> Vec<Proposal> 
 /// A fit that is followed anew as long as that betters it: forces that pushed the runs beside other numbers hold these where they were.
 pub(super) fn to_the_end(problem: &Problem<'_>, mut now: Fitted) -> Fitted {
     for _ in 0..ENDS {
-        let Ok(next) = problem.fit(&now, now.set.clone(), END) else { break };
+        let further = |now: &Fitted, anew| {
+            let next = problem.fit(now, now.set.clone(), Reach { anew, ..END }).ok();
+            next.filter(|next| now.score - next.score > 0.0)
+        };
+        // Runs that are followed anew may be led astray where they were not.
+        let Some(next) = further(&now, true).or_else(|| further(&now, false)) else { break };
         let fall = now.score - next.score;
-        if fall.is_nan() || fall <= 0.0 {
-            break;
-        }
         now = next;
         if fall < WORTH {
             break;

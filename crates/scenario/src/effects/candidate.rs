@@ -209,9 +209,18 @@ pub struct Candidate {
     /// Coordinates that no data of this kind can show, or that are in reserve; they stay at neutral.
     pub held: Vec<usize>,
     /// Those of them that are freed where the law does not follow all of the motion without, and where a fit of them begins.
-    pub reserve: Vec<(usize, f64)>,
+    pub reserve: Vec<(usize, Begin)>,
     /// Whether its screen is expensive: many points, or memory whose start is free too.
     pub is_expensive: bool,
+}
+
+/// Where a fit of a coordinate begins that was held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Begin {
+    /// Where the law is nearly right without.
+    pub near: f64,
+    /// Where it leads astray without: where it is smoothest.
+    pub afar: f64,
 }
 
 impl Candidate {
@@ -246,10 +255,10 @@ impl Candidate {
         self
     }
 
-    /// The same with a coordinate that stays at neutral until the law does not follow all of the motion; `start`: where a fit of it begins then.
-    pub fn in_reserve(mut self, coordinate: usize, start: f64) -> Self {
+    /// The same with a coordinate that stays at neutral until the law does not follow all of the motion.
+    pub fn in_reserve(mut self, coordinate: usize, begin: Begin) -> Self {
         self.held.push(coordinate);
-        self.reserve.push((coordinate, start));
+        self.reserve.push((coordinate, begin));
         self
     }
 

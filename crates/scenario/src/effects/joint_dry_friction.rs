@@ -4,6 +4,7 @@
 //!
 //! A joint that does not quite hold creeps below v_c. A diagnosis frees z₀ and v_c only where friction with the usual ones does not follow all of the motion.
 
+use super::candidate::Begin;
 use super::joint::SMALL;
 use super::*;
 use parameter::{AT_LEAST_ZERO, POSITIVE, shape, zero};
@@ -23,8 +24,8 @@ const V_C: Parameter =
     zero("v_c", AT_LEAST_ZERO, RATE, "rate below which the joint creeps under less than the level, in its share of it")
         .optional();
 /// Rate from which creep is looked for, and the largest.
-const CREEP: f64 = 1e-3;
-const FASTEST: f64 = 0.1;
+const CREEP: Begin = Begin { near: 1e-3, afar: 0.1 };
+const FASTEST: f64 = 0.3;
 /// Between which a reach is looked for.
 const REACHES: [f64; 2] = [1e-6, 0.1];
 
@@ -128,7 +129,8 @@ fn held(mut coordinates: Vec<Coordinate>, joint: &JointFact) -> Candidate {
     let own = coordinates.len();
     coordinates.push(Coordinate::log(Z_0.name, REACH, REACHES));
     coordinates.push(Coordinate::free(V_C.name, 0.0).within([0.0, FASTEST]));
-    Candidate::new(joint.place(), coordinates).in_reserve(own, REACH.ln()).in_reserve(own + 1, CREEP)
+    let reach = Begin { near: REACH.ln(), afar: REACH.ln() };
+    Candidate::new(joint.place(), coordinates).in_reserve(own, reach).in_reserve(own + 1, CREEP)
 }
 
 /// Levels of dry friction, each with a column at zero.
