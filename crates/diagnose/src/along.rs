@@ -31,9 +31,9 @@ pub(crate) struct Course {
 pub(crate) const USUAL: Tolerance = Tolerance { mass: 0.01, com_m: 2e-3, inertia: 0.01, ..Tolerance::EXACT };
 
 /// Iterations of a last fit, to all samples.
-const LAST: Reach = Reach { iterations: 4, reuse: false, anew: true };
+const LAST: Reach = Reach { iterations: 4, reuse: false };
 /// Iterations with the nominal numbers free within their tolerances.
-const WITHIN: Reach = Reach { iterations: 6, reuse: true, anew: false };
+const WITHIN: Reach = Reach { iterations: 6, reuse: true };
 
 /// Whether a model may be followed from interval to interval: contacts and mechanisms remember what a state does not hold.
 pub(crate) fn may_follow(built: &Built) -> bool {
@@ -96,7 +96,7 @@ pub(crate) fn told_by_all_runs(
 }
 
 /// Iterations of a fit to all runs: numbers are near.
-const ALL_RUNS: Reach = Reach { iterations: 3, reuse: true, anew: false };
+const ALL_RUNS: Reach = Reach { iterations: 3, reuse: true };
 
 /// The runs of a role along which something is sought.
 pub(crate) fn problem<'a>(stage: &Stage<'a>, plant: &'a Plant, own: &Facts, role: Role) -> Problem<'a> {

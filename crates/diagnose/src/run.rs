@@ -100,7 +100,7 @@ pub fn diagnose_with(
         }
         watch.step("what whole runs leave is far beyond noise: windows");
         let found = diagnose_in_windows(scenario, set, &Work::new(watch, effort))?;
-        return Ok(if is_clearly_better(&whole.0, &found.0) { whole } else { found });
+        return Ok(if is_clearly_better(&found.0, &whole.0) { found } else { whole });
     }
     diagnose_in_windows(scenario, set, &Work::new(watch, effort))
 }

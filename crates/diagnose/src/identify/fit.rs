@@ -78,8 +78,6 @@ pub struct Reach {
     pub iterations: usize,
     /// Whether derivatives by states and forces may be those of an earlier fit.
     pub reuse: bool,
-    /// Whether the runs are followed anew first: what memory an effect has in them may have been found beside other numbers.
-    pub anew: bool,
 }
 
 /// Intervals of a run, and samples of its sparsest reading that each has.
@@ -338,7 +336,8 @@ impl<'a> Problem<'a> {
     /// A set fitted, from where another one stands.
     pub fn fit(&self, from: &Fitted, set: EffectSet, reach: Reach) -> Result<Fitted, DiagnoseError> {
         let mut now = self.with(from, set)?;
-        if reach.anew || now.set.titles() != from.set.titles() {
+        // To the end a fit begins by following the runs anew: what memory an effect has in them may have been found beside other numbers.
+        if !reach.reuse || now.set.titles() != from.set.titles() {
             now = self.followed(from, now)?;
         }
         if !reach.reuse {

@@ -76,9 +76,9 @@ const SPOKEN: usize = 2;
 const PROMISING: f64 = 0.6;
 const REFUTED: f64 = 0.1;
 /// Iterations of a first fit, and to the end.
-pub(super) const LOOK: Reach = Reach { iterations: 6, reuse: true, anew: false };
-const GLANCE: Reach = Reach { iterations: 3, reuse: true, anew: false };
-const END: Reach = Reach { iterations: 6, reuse: false, anew: true };
+pub(super) const LOOK: Reach = Reach { iterations: 6, reuse: true };
+const GLANCE: Reach = Reach { iterations: 3, reuse: true };
+const END: Reach = Reach { iterations: 6, reuse: false };
 /// Most times that a fit is followed anew to its end, and fall of −2 log likelihood that is worth another time.
 const ENDS: usize = 5;
 const WORTH: f64 = 3.0;
@@ -478,12 +478,9 @@ fn siblings(looked: &Looked, now: &Fitted, single: &LinearSet) -> Vec<Proposal> 
 /// A fit that is followed anew as long as that betters it: forces that pushed the runs beside other numbers hold these where they were.
 pub(super) fn to_the_end(problem: &Problem<'_>, mut now: Fitted) -> Fitted {
     for _ in 0..ENDS {
-        let further = |now: &Fitted, anew| {
-            let next = problem.fit(now, now.set.clone(), Reach { anew, ..END }).ok();
-            next.filter(|next| now.score - next.score > 0.0)
-        };
-        // Runs that are followed anew may be led astray where they were not.
-        let Some(next) = further(&now, true).or_else(|| further(&now, false)) else { break };
+        let further =
+            |from: &Fitted| problem.fit(from, now.set.clone(), END).ok().filter(|next| now.score - next.score > 0.0);
+        let Some(next) = further(&now).or_else(|| further(&cooled(&now))) else { break };
         let fall = now.score - next.score;
         now = next;
         if fall < WORTH {
@@ -492,6 +489,16 @@ pub(super) fn to_the_end(problem: &Problem<'_>, mut now: Fitted) -> Fitted {
     }
     now
 }
+
+/// A fit with forces that may do less: as long as they bear what wrong numbers leave undone, these move by a little of the way each time.
+fn cooled(fit: &Fitted) -> Fitted {
+    let mut cooled = fit.clone();
+    cooled.spread.force *= COOLER;
+    cooled
+}
+
+/// Share of the unknown forces' standard deviation.
+const COOLER: f64 = 0.1;
 
 /// A fit without members that are not worth their price.
 fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64)) -> Result<Fitted, DiagnoseError> {
