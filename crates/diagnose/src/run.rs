@@ -126,7 +126,8 @@ fn diagnose_in_windows(
         return Ok(found);
     }
     watch.step("that explains too little: windows of another length");
-    let other = diagnose_in(scenario, set, work, second)?;
+    // What was sought in vain is not taken from what may be found.
+    let other = diagnose_in(scenario, set, &work.anew(), second)?;
     Ok(if merit(&other.0) > merit(&found.0) { other } else { found })
 }
 

@@ -77,6 +77,11 @@ impl<'a> Work<'a> {
         }
     }
 
+    /// Nothing done yet, and as much may be done again.
+    pub(crate) fn anew(&self) -> Self {
+        Self { limit: self.limit, ..Self::new(self.watch, 0.0) }
+    }
+
     /// What was done so far.
     pub fn total(&self) -> Total {
         Total {
