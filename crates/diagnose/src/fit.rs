@@ -527,3 +527,27 @@ pub fn pseudo_inverse(a: &DMatrix<f64>) -> DMatrix<f64> {
     let m = v * DMatrix::from_diagonal(&inverse) * v.transpose();
     DMatrix::from_fn(n, n, |i, j| m[(i, j)] * scale[i] * scale[j])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::hypotheses;
+    use crate::facts::{Facts, JointFact};
+
+    #[test]
+    fn friction_that_leads_astray_may_creep_and_what_has_nothing_in_reserve_stays() {
+        let joint = JointFact { name: "j".to_owned(), coordinate: 0, armature: 0.0, largest_command: 0.0 };
+        let all = hypotheses(&Facts { joints: vec![joint], duration: 1.0, ..Facts::default() });
+        let of = |name: &str| all.iter().find(|h| h.name == name).expect("it is in the library");
+        let (dry, viscous) = (of("joint-coulomb-friction"), of("joint-viscous-friction"));
+        let plain = EffectSet::default().with(viscous, &viscous.neutral());
+        assert!(plain.released().is_none());
+        let set = plain.with(dry, &dry.neutral());
+        assert_eq!(set.slots(), [(0, 0), (1, 0)], "its level alone is fitted");
+        let free = set.released().expect("it has a reach and a rate in reserve");
+        assert_eq!(free.slots(), [(0, 0), (1, 0), (1, 1), (1, 2)]);
+        let [near, afar] =
+            [dry.relaxed(&dry.neutral()), dry.relaxed_afar(&dry.neutral())].map(|r| r.expect("so it has").1[2]);
+        assert!(0.0 < near && near < afar && free.members[1].1[2] == afar, "smoothest where it creeps fastest");
+    }
+}

@@ -135,5 +135,7 @@ mod tests {
         assert_eq!(work.total(), Total { replays: 2, simulated: 0.75, evaluations: 300 });
         work.add(0.0, 1, &of(101, 0));
         assert!(work.is_spent(Until::Fit));
+        let anew = work.anew();
+        assert!(!anew.is_spent(Until::Search) && anew.limit == work.limit && anew.total().evaluations == 0);
     }
 }
