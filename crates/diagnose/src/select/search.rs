@@ -236,12 +236,11 @@ fn fit_sets(
         if enough.iter().any(|known| known.iter().all(|t| added.contains(t))) {
             continue;
         }
-        let fit = fit_first(problem, now, &set, pool, many);
-        let Ok(fit) = fit.inspect_err(|error| watch.step(&format!("  {}: {error}", added.join("; ")))) else {
+        let fit = fit_first(problem, now, &set, pool, (many, here));
+        let Ok((same, fit)) = fit.inspect_err(|error| watch.step(&format!("  {}: {error}", added.join("; ")))) else {
             refuted.push(added);
             continue;
         };
-        let (same, fit) = but_for_a_detail(problem, now, fit, (many, here));
         if let Some(same) = same {
             finer = same;
             now = &finer;
@@ -273,23 +272,25 @@ fn fit_sets(
     Ok(best_of(problem, worthy, tried, (before, many)))
 }
 
-/// A proposal fitted beside a fit.
+/// A proposal fitted beside a fit, and that on the same intervals where these are others.
 fn fit_first(
     problem: &Problem<'_>,
     now: &Fitted,
     Proposal { members, spread, .. }: &Proposal,
     pool: &Pool,
-    many: usize,
-) -> Result<Fitted, DiagnoseError> {
+    (many, here): (usize, f64),
+) -> Result<(Option<Fitted>, Fitted), DiagnoseError> {
     let begun = Fitted { spread: spread.clone(), ..now.clone() };
     let set = members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
-    let fit = problem.fit(&begun, set.clone(), LOOK)?;
-    if criterion(&fit, many) < criterion(now, many) {
-        return Ok(fit);
+    let look =
+        |set: EffectSet| problem.fit(&begun, set, LOOK).map(|fit| but_for_a_detail(problem, now, fit, (many, here)));
+    let first = look(set.clone())?;
+    if criterion(&first.1, many) < criterion(first.0.as_ref().unwrap_or(now), many) {
+        return Ok(first);
     }
-    // A law that leads astray may do so for a detail that it holds in reserve.
-    let free = set.released().and_then(|free| problem.fit(&begun, free, LOOK).ok());
-    Ok(free.filter(|free| criterion(free, many) < criterion(&fit, many)).unwrap_or(fit))
+    // A law that leads astray may do so for what it holds in reserve.
+    let free = set.released().and_then(|free| look(free).ok());
+    Ok(free.filter(|free| criterion(&free.1, many) < criterion(&first.1, many)).unwrap_or(first))
 }
 
 /// The first proposal that was not fitted yet.
