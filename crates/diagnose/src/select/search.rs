@@ -481,7 +481,9 @@ pub(super) fn to_the_end(problem: &Problem<'_>, mut now: Fitted) -> Fitted {
     for _ in 0..ENDS {
         let further =
             |from: &Fitted| problem.fit(from, now.set.clone(), END).ok().filter(|next| now.score - next.score > 0.0);
-        let Some(next) = further(&now).or_else(|| further(&cooled(&now))) else { break };
+        // Forces that move what an interval reads by less than noise bear nothing.
+        let cooler = || (problem.power(&now) > 1.0).then(|| cooled(&now));
+        let Some(next) = further(&now).or_else(|| further(&cooler()?)) else { break };
         let fall = now.score - next.score;
         now = next;
         if fall < WORTH {
