@@ -9,7 +9,7 @@ use crate::hypothesis::{Alternative, Hypothesis};
 use crate::linear::Stage;
 use crate::plant::Plant;
 use crate::search::{LOOK, TIE, WHOLE, errors};
-use crate::select::search::{FURTHER, further};
+use crate::select::search::takes_little;
 use crate::standing::{Standing, criterion};
 use crate::work::Until;
 
@@ -119,8 +119,7 @@ pub(crate) fn simplify(
             let tried = now.refit(stage, plant, near.set, LOOK)?;
             let costs = criterion(tried.judge()) - criterion(now.judge());
             stage.work.watch.step(&format!("{} instead costs {costs:.1}", plain.title()));
-            let is_as_good =
-                costs < (AS_GOOD * now.judge().noise).min(TIE * brought) || takes_little(&now, &tried, brought);
+            let is_as_good = costs < (AS_GOOD * now.judge().noise).min(TIE * brought) || is_idle(&now, &tried, brought);
             if is_as_good && tried.is_comparable(&now) || !now.is_better(&tried) {
                 stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
                 now = tried;
@@ -131,10 +130,9 @@ pub(crate) fn simplify(
     Ok(now)
 }
 
-/// Whether a law takes less than its part of what its plainer kind leaves, where both leave what is no noise: what a model leaves that is not in the library
-/// is none, and a criterion that takes it for such is sure of anything (ĉ of Burnham and Anderson 2002, ch. 2.5).
-fn takes_little(rich: &Standing, plain: &Standing, brought: f64) -> bool {
-    let [rich, poor] = [rich, plain].map(Standing::judge);
-    let part = further(poor.excess(), brought + rich.excess()).min(FURTHER[1]);
-    rich.is_significant() && rich.excess() > (1.0 - part) * poor.excess()
+/// Whether a law does little more than its plainer kind, where both leave what is no noise: what a model leaves that is not in the library is none, and a
+/// criterion that takes it for such is sure of anything (ĉ of Burnham and Anderson 2002, ch. 2.5).
+fn is_idle(rich: &Standing, plain: &Standing, brought: f64) -> bool {
+    let [rich, plain] = [rich, plain].map(Standing::judge);
+    rich.is_significant() && takes_little(rich.excess(), plain.excess(), brought + rich.excess())
 }

@@ -57,7 +57,7 @@ const MOST: usize = 6;
 const AT_ONCE: usize = 3;
 /// Share of what the unknown forces do that one more effect has to take; and where less than a hundredth of that is left, which may be what the found
 /// laws are off by themselves.
-pub(crate) const FURTHER: [f64; 2] = [0.2, 0.75];
+const FURTHER: [f64; 2] = [0.2, 0.75];
 const SMALL: f64 = 0.01;
 /// Share of what the unknown forces do (their power) that may be what steps and difference quotients make of the laws that were found.
 const OWN: f64 = 1e-5;
@@ -186,11 +186,16 @@ fn corrected(
 }
 
 /// Share of what unknown forces do beside a set that one more effect has to take.
-pub(crate) fn further(beside: f64, all: f64) -> f64 {
+fn further(beside: f64, all: f64) -> f64 {
     if beside < OWN * all {
         return 1.0;
     }
     FURTHER[usize::from(beside < SMALL * all)]
+}
+
+/// Whether a law takes less than its part of what its plainer kind leaves, of all that there was.
+pub(crate) fn takes_little(rich: f64, plain: f64, all: f64) -> bool {
+    rich > (1.0 - further(plain, all).min(FURTHER[1])) * plain
 }
 
 /// What a round of fits goes by.
@@ -552,14 +557,13 @@ fn simplified(
             let tried = to_the_end(problem, glance);
             let costs = criterion(&tried, many) - criterion(&now, many);
             let [rich, poor] = [&now, &tried].map(|fit| problem.power(fit));
-            let part = further(poor, all).min(FURTHER[1]);
-            let takes_little = || -> Result<bool, DiagnoseError> {
+            let is_idle = || -> Result<bool, DiagnoseError> {
                 let left = remainder(problem, &now)?;
-                Ok(left.rise > left.bound && rich > (1.0 - part) * poor)
+                Ok(left.rise > left.bound && takes_little(rich, poor, all))
             };
             let said = format!("  {} instead costs {costs:.1}, leaves {:.3} times as much", plain.title(), poor / rich);
             problem.stage.work.watch.step(&said);
-            if costs < 0.0 || takes_little()? {
+            if costs < 0.0 || is_idle()? {
                 now = tried;
                 break;
             }
