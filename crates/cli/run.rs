@@ -8,9 +8,9 @@ use softdock::record::{self, Log, OutputFolder, Recorder, SampleSink, Scene};
 use softdock::scenario::outcome::{Judge, check_expectations};
 use softdock::scenario::recording::{recorder_plan, scene};
 use softdock::scenario::spec::Strategy;
-use softdock::scenario::{self, Mission};
+use softdock::scenario::{self, Mission, RigLog};
 use softdock::sim::{Observer, StepError};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Arguments of `softdock run`.
@@ -30,6 +30,12 @@ pub(crate) struct Arguments {
     /// Replay recorded commands (CSV or Parquet; columns command.ACTUATOR or actuator.ACTUATOR.command)
     #[arg(long, value_name = "RECORDING")]
     commands: Option<PathBuf>,
+    /// Also write what the sensors and controllers say as a recording of a rig: a run more in this folder, which `diagnose` reads
+    #[arg(long, value_name = "FOLDER")]
+    record: Option<PathBuf>,
+    /// What the recorded run is for
+    #[arg(long, value_enum, default_value_t = Role::Fit, requires = "record")]
+    role: Role,
     /// Write no run.rrd
     #[arg(long)]
     no_rrd: bool,
@@ -46,6 +52,15 @@ pub(crate) struct Arguments {
     quiet: bool,
 }
 
+/// What a recorded run may be used for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Role {
+    /// To find and fit a model
+    Fit,
+    /// Only to judge it
+    Holdout,
+}
+
 /// Runs, writes, judges.
 pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let mut mission = load(arguments)?;
@@ -59,21 +74,42 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let mut viewer = live::open(arguments, &plan, &mission, &scene)?;
     let mut recorder = Recorder::new(&mission.world, plan, viewer.as_mut().map(|v| v as &mut dyn SampleSink));
     let mut judge = Judge::new(&mission);
+    let mut rig = arguments.record.is_some().then(|| RigLog::new(&mission)).transpose()?;
     let mut progress = Progress::new(mission.steps, arguments.quiet);
     let started = Instant::now();
     let ended = {
-        let observers: &mut [&mut dyn Observer] = &mut [&mut judge, &mut recorder, &mut progress];
-        mission.world.run(mission.steps, &*mission.controller, observers)
+        let mut observers: Vec<&mut dyn Observer> = vec![&mut judge, &mut recorder, &mut progress];
+        observers.extend(rig.as_mut().map(|rig| rig as &mut dyn Observer));
+        mission.world.run(mission.steps, &*mission.controller, &mut observers)
     };
     let clock = Clock { wall_s: started.elapsed().as_secs_f64() };
     progress.finish();
     if let Some(error) = recorder.error.take() {
         return Err(error.into());
     }
+    if let (Some(folder), Some(rig)) = (&arguments.record, rig) {
+        append(arguments, folder, rig)?;
+    }
     let log = std::mem::take(&mut recorder.log);
     drop(recorder);
     let run = Finished { mission, folder, scene, clock };
     conclude(arguments, run, log, (judge, &ended), viewer)
+}
+
+/// Adds a run to the recordings in a folder.
+fn append(arguments: &Arguments, folder: &Path, rig: RigLog) -> anyhow::Result<()> {
+    let role = match arguments.role {
+        Role::Fit => record::Role::Fit,
+        Role::Holdout => record::Role::Holdout,
+    };
+    let mut words = arguments.set.clone();
+    words.extend(arguments.seed.map(|seed| format!("seed={seed}")));
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    let added = rig.finish("", (role, &words.join(" "))).append_to(folder)?;
+    if !arguments.quiet {
+        println!("  Recorded as {} in {}", added.join(", "), folder.display());
+    }
+    Ok(())
 }
 
 /// A run that is over.

@@ -1,7 +1,7 @@
 //! What the nominal model and the recording offer to hypotheses: places and nominal numbers.
 
 use crate::plant::Built;
-use crate::tape::Tape;
+use crate::tape::{Commanded, Tape};
 use contact::{Normal, NormalLaw};
 use friction::Friction;
 use multibody::JointKind;
@@ -76,8 +76,9 @@ fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
         for joint in vehicle.tree.joints.iter().filter(single) {
             let coordinate = vehicle.v0 + joint.v_index;
             let drives = |i: usize| matches!(built.model.actuators[i].kind, ActuatorKind::JointEffort { coordinate: c, .. } if c == coordinate);
-            let commands = tapes.iter().flat_map(|t| &t.commands).filter(|c| drives(c.actuator));
-            let largest = commands.flat_map(|c| &c.efforts).fold(0.0_f64, |m, e| m.max(e.abs()));
+            let commands =
+                tapes.iter().flat_map(|t| &t.commands).filter(|c| drives(c.actuator) && c.what == Commanded::Effort);
+            let largest = commands.flat_map(|c| &c.values).fold(0.0_f64, |m, e| m.max(e.abs()));
             all.push(JointFact {
                 name: joint.name.clone(),
                 coordinate,

@@ -1,7 +1,7 @@
 //! Recorded commands, as a replay hears them.
 
 use crate::replay::SAME;
-use crate::tape::Tape;
+use crate::tape::{Commanded, Tape};
 use sim::World;
 
 /// The commands that act now, and when they change.
@@ -33,8 +33,13 @@ impl<'a> Feed<'a> {
 
     pub(crate) fn apply(&self, world: &mut World) {
         for (at, command) in self.at.iter().zip(&self.tape.commands) {
-            let effort = at.checked_sub(1).map_or(0.0, |i| command.efforts[i]);
-            world.commands_mut()[command.actuator].effort = effort;
+            let value = at.checked_sub(1).map_or(0.0, |i| command.values[i]);
+            let commanded = &mut world.commands_mut()[command.actuator];
+            match command.what {
+                Commanded::Effort => commanded.effort = value,
+                Commanded::Position => commanded.position = value,
+                Commanded::Velocity => commanded.velocity = value,
+            }
         }
     }
 }

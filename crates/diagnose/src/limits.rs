@@ -8,7 +8,7 @@ use crate::curves::slides;
 use crate::number::short;
 use crate::plant::{Built, Plant};
 use crate::reading::{Reading, Value};
-use crate::tape::{CommandTape, Tape};
+use crate::tape::{CommandTape, Commanded, Tape};
 use record::{RecordingSet, Series};
 use scenario::Scenario;
 use scenario::measure::Quantity;
@@ -53,7 +53,9 @@ fn speed_beyond(tapes: &[Tape], (actuator, coordinate): (usize, usize), limit: f
     let mut count = 0;
     let mut beyond = Vec::new();
     for tape in tapes {
-        let Some(command) = tape.commands.iter().find(|c| c.actuator == actuator) else { continue };
+        let Some(command) = tape.commands.iter().find(|c| c.actuator == actuator && c.what == Commanded::Effort) else {
+            continue;
+        };
         for reading in &tape.readings {
             let speeds = speeds_of(reading, coordinate);
             count += speeds.len();
@@ -94,7 +96,7 @@ impl CommandTape {
     /// The command that is held at an instant; the first one before it begins.
     fn at(&self, time: f64) -> f64 {
         let next = self.times.partition_point(|t| *t <= time);
-        self.efforts.get(next.saturating_sub(1)).copied().unwrap_or(0.0)
+        self.values.get(next.saturating_sub(1)).copied().unwrap_or(0.0)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The scenario with a set of effects, built for replay.
 
 use crate::error::DiagnoseError;
+use crate::tape::Commanded;
 use record::{RecordedRun, RecordingSet};
 use scenario::measure::{Gauge, MeasureError, Mount, Quantity, SensorModel};
 use scenario::spec::{Effect, Integrator, IntegratorKind};
@@ -40,6 +41,13 @@ pub struct Built {
     pub delay: f64,
 }
 
+/// Commands of a joint by the end of their channels' names.
+const COMMANDS: [(&str, Commanded); 3] = [
+    (".effort_command", Commanded::Effort),
+    (".position_command", Commanded::Position),
+    (".velocity_command", Commanded::Velocity),
+];
+
 /// Step from which Runge–Kutta's is sought, in steps at which a scheme of lower order, which damps, holds.
 const FINER: f64 = 0.25;
 
@@ -76,26 +84,36 @@ impl Plant {
         Gauge::resolve(&self.scenario, model, channel).map(|gauge| gauge.quantity())
     }
 
-    /// Actuator that a command channel drives, with the effort of a command of one; `None` for a channel that is no command.
-    pub fn actuator(&self, model: &Model, channel: &str) -> Option<Result<(usize, f64), MeasureError>> {
+    /// Actuator that a command channel drives, what of it, and the value of a command of one; `None` for a channel that is no command.
+    pub fn actuator(&self, model: &Model, channel: &str) -> Option<Result<(usize, Commanded, f64), MeasureError>> {
         let refuse = |fault: &str| MeasureError { channel: channel.to_owned(), fault: fault.to_owned() };
-        let joint = channel.strip_prefix("joint.").and_then(|c| c.strip_suffix(".effort_command"));
-        let (name, is_drive) = match joint {
-            Some(joint) => (format!("joint.{joint}.position"), true),
-            None if channel.starts_with("actuator.") => (channel.to_owned(), false),
+        let of_joint = |(suffix, what): (&str, Commanded)| {
+            let joint = channel.strip_prefix("joint.")?.strip_suffix(suffix)?;
+            Some((format!("joint.{joint}.position"), Some(what)))
+        };
+        let (name, of_joint) = match COMMANDS.into_iter().find_map(of_joint) {
+            Some(found) => found,
+            None if channel.starts_with("actuator.") => (channel.to_owned(), None),
             None => return None,
         };
-        let drives =
-            |a: &Actuator, v: usize| matches!(a.kind, ActuatorKind::JointEffort { coordinate, .. } if coordinate == v);
-        Some(self.quantity(model, &name).and_then(|quantity| match quantity {
-            Quantity::JointPosition(v) if is_drive => {
-                let found = model.actuators.iter().position(|a| drives(a, v));
-                found.map(|i| (i, 1.0)).ok_or_else(|| refuse("no [[actuator]] gives this joint an effort; add one"))
+        let drives = |a: &Actuator, v: usize, what: Commanded| match a.kind {
+            ActuatorKind::JointEffort { coordinate, .. } => coordinate == v && what == Commanded::Effort,
+            ActuatorKind::JointDrive { coordinate, .. } => coordinate == v,
+            ActuatorKind::Thruster { .. } | ActuatorKind::LatchRelease { .. } => false,
+        };
+        Some(self.quantity(model, &name).and_then(|quantity| match (quantity, of_joint) {
+            (Quantity::JointPosition(v), Some(what)) => {
+                let found = model.actuators.iter().position(|a| drives(a, v, what));
+                let missing =
+                    "no [[actuator]] of the scenario takes this command of the joint; add one, or drop the column";
+                found.map(|i| (i, what, 1.0)).ok_or_else(|| refuse(missing))
             }
-            Quantity::Command(i) => match model.actuators[i].kind {
-                ActuatorKind::Thruster { max_force, .. } => Ok((i, max_force)),
-                _ => Ok((i, 1.0)),
-            },
+            (Quantity::Command(i), None) => Ok(match model.actuators[i].kind {
+                ActuatorKind::Thruster { max_force, .. } => (i, Commanded::Effort, max_force),
+                ActuatorKind::JointDrive { stiffness, .. } if stiffness > 0.0 => (i, Commanded::Position, 1.0),
+                ActuatorKind::JointDrive { .. } => (i, Commanded::Velocity, 1.0),
+                ActuatorKind::JointEffort { .. } | ActuatorKind::LatchRelease { .. } => (i, Commanded::Effort, 1.0),
+            }),
             _ => Err(refuse("commands nothing in the scenario; drop the column")),
         }))
     }
@@ -117,7 +135,7 @@ impl Plant {
         let delay = model.effects().iter().filter_map(|effect| delay(&effect.kind)).fold(0.0, f64::max);
         let sensor = |channel: &String| {
             let gauge = Gauge::resolve(&scenario, &model, channel).ok()?;
-            Some((channel.clone(), gauge, SensorModel::of(&scenario.effects, &model, channel)))
+            Some((channel.clone(), gauge, SensorModel::late(&scenario, &model, channel)))
         };
         Ok(Built {
             by_run: self.drives.iter().map(|paths| Arc::new(model.with_drive_paths(paths.iter().cloned()))).collect(),

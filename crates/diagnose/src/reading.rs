@@ -50,7 +50,7 @@ pub struct Reading {
 impl Reading {
     /// Whether it is an orientation.
     pub fn is_orientation(&self) -> bool {
-        matches!(self.quantity, Quantity::Orientation(..))
+        self.quantity.is_orientation()
     }
 
     /// Scalars per sample.

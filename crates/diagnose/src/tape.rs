@@ -12,21 +12,34 @@ use sim::Model;
 use spatial::{Rot, Vec3, nalgebra};
 use std::collections::BTreeMap;
 
-/// Commands of one actuator, each held until the next.
+/// What of an actuator is commanded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Commanded {
+    /// Its effort, N or N·m; of a drive the feed-forward.
+    Effort,
+    /// The reference of a position loop, rad or m.
+    Position,
+    /// The reference of a rate loop, rad/s or m/s.
+    Velocity,
+}
+
+/// One command of one actuator, each value held until the next.
 #[derive(Clone, Debug)]
 pub struct CommandTape {
     /// Index of the actuator.
     pub actuator: usize,
+    /// What of it is commanded.
+    pub what: Commanded,
     /// Ticks, s.
     pub times: Vec<f64>,
-    /// Effort, N or N·m.
-    pub efforts: Vec<f64>,
+    /// Values, SI units.
+    pub values: Vec<f64>,
 }
 
 impl CommandTape {
     /// The instants at which it changes, s.
     fn changes(&self) -> impl Iterator<Item = f64> + '_ {
-        let changes = |i: &usize| i.checked_sub(1).is_none_or(|before| self.efforts[*i] != self.efforts[before]);
+        let changes = |i: &usize| i.checked_sub(1).is_none_or(|before| self.values[*i] != self.values[before]);
         (0..self.times.len()).filter(changes).map(|i| self.times[i])
     }
 }
@@ -84,9 +97,9 @@ impl Tape {
                 continue;
             }
             if let Some(found) = plant.actuator(model, beside.as_deref().unwrap_or(&series.channel)) {
-                let (actuator, unit) = found.map_err(refuse)?;
-                let efforts = series.values.iter().map(|v| v * unit).collect();
-                commands.push(CommandTape { actuator, times: series.times.to_vec(), efforts });
+                let (actuator, what, unit) = found.map_err(refuse)?;
+                let values = series.values.iter().map(|v| v * unit).collect();
+                commands.push(CommandTape { actuator, what, times: series.times.to_vec(), values });
                 continue;
             }
             let (prefix, component) = split_component(&series.channel);
@@ -194,7 +207,7 @@ fn split_component(channel: &str) -> (&str, usize) {
 }
 
 fn is_orientation(quantity: &Quantity) -> bool {
-    matches!(quantity, Quantity::Orientation(..))
+    quantity.is_orientation()
 }
 
 /// One reading of the components that were sampled together; where they were not, one each.

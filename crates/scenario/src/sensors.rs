@@ -2,24 +2,26 @@
 //!
 //! A `[[sensor]]` reads at t = k/rate, k = 0, 1, …, in the first step that has come so far:
 //!
-//!   y = faults(x(t)) + σ n,     n: standard normal, drawn at each reading,     it arrives at t + delay
+//!   y = round(clip(faults(x(t)) + b + w(t) + σ n)),     n: standard normal,     w: a walk, dw = s √dt n′,     it arrives at t + delay
 //!
-//! and a recording holds the last reading that has arrived since its sample before; an empty cell where none has. A joint, body
-//! or drive whose sensor an effect faults is read in every step, without noise, and recorded under its own name instead of what
-//! is true. The noise of a quantity depends on the scenario's seed and on the quantity's name alone.
+//! and of an orientation q exp(σ n). A recording holds the last reading that has arrived since its sample before; an empty cell where none has. A joint, body
+//! or drive whose sensor an effect faults is read in every step, without noise. What reads a joint or a body is recorded under that name instead of what is
+//! true. The noise of a quantity depends on the scenario's seed and on the quantity's name alone.
 //!
 //! A contact force is that of the last step.
 
 use crate::effects::SENSOR_DELAY;
-use crate::measure::{Gauge, Reading, SensorModel};
-use crate::spec::{Scenario, SensorKind};
+use crate::glob::glob_matches;
+use crate::measure::{Gauge, Quantity, Reading, SensorModel, joints, links};
+use crate::spec::{Scenario, Sensor as SensorSpec, SensorKind};
 use crate::{Mission, ScenarioError};
+use multibody::JointKind;
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use record::{ChannelName, ChannelSpec, Plot, Probe};
 use sim::{Model, World};
-use spatial::Vec3;
+use spatial::{Vec3, exp_rotation};
 use std::collections::VecDeque;
 
 /// Part of a step by which a reading may come early: times of steps are rounded.
@@ -28,25 +30,33 @@ const ROUNDING: f64 = 1e-6;
 /// The sensors of a mission, ready to be recorded.
 pub(crate) fn of_mission(mission: &Mission) -> Result<Vec<Sensor>, Vec<ScenarioError>> {
     let (scenario, model) = (&mission.scenario, mission.world.model());
-    let (mut sensors, mut errors) = (Vec::new(), Vec::new());
+    let (mut sensors, mut errors) = (Vec::<Sensor>::new(), Vec::new());
     for (i, sensor) in scenario.sensors.iter().enumerate() {
         let most = 1.0 / scenario.integrator.step_s;
         if sensor.rate_hz > most * (1.0 + ROUNDING) {
             let reason = format!("is more than one reading a step; at most {most} Hz, or a shorter integrator.step_s");
             errors.push(scenario.complaint(&format!("sensor[{i}].rate_hz"), reason));
         }
-        for (quantity, sigma) in noise_of(&sensor.kind) {
-            let name = format!("sensor.{}.{quantity}", sensor.name);
-            let timing = Timing { rate: Some(sensor.rate_hz), delay: sensor.delay_s };
-            sensors.extend(Sensor::new(scenario, model, &name, (sigma, timing)));
+        for part in parts_of(sensor, model).unwrap_or_default() {
+            let timing = Timing { rate: Some(sensor.rate_hz), delay: sensor.delay_s, dropout: sensor.dropout };
+            match sensors.iter().any(|known| known.name == part.name) {
+                true => {
+                    let reason = format!("reads {} as another sensor does; a quantity has one", part.name);
+                    errors.push(scenario.complaint(&format!("sensor[{i}]"), reason));
+                }
+                false => sensors.extend(Sensor::new(scenario, model, part, timing)),
+            }
         }
     }
     for name in faulted(scenario, model) {
-        sensors.extend(Sensor::new(scenario, model, &name, (0.0, Timing { rate: None, delay: 0.0 })));
+        if !sensors.iter().any(|known| known.name == name) {
+            let timing = Timing { rate: None, delay: 0.0, dropout: 0.0 };
+            sensors.extend(Sensor::new(scenario, model, Part { name, ..Part::default() }, timing));
+        }
     }
-    errors.extend(sensors.iter().filter(|s| s.delay < 0.0).map(|sensor| {
+    errors.extend(sensors.iter().filter(|s| s.timing.delay < 0.0).map(|sensor| {
         let late = scenario.effects.iter().position(|e| e.name == SENSOR_DELAY.name).unwrap_or_default();
-        let (name, s) = (&sensor.name, sensor.delay);
+        let (name, s) = (&sensor.part.name, sensor.timing.delay);
         let reason = format!(
             "makes {name} {:.3e} s early, and a run cannot record what is yet to come; leave the effect out of runs",
             -s
@@ -56,19 +66,150 @@ pub(crate) fn of_mission(mission: &Mission) -> Result<Vec<Sensor>, Vec<ScenarioE
     if errors.is_empty() { Ok(sensors) } else { Err(errors) }
 }
 
-/// What a sensor measures as a whole, and the standard deviation of its noise.
-fn noise_of(kind: &SensorKind) -> Vec<(&'static str, f64)> {
-    match *kind {
+/// A quantity that a sensor reads, and with which errors.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Part {
+    /// Name of the quantity, `joint.arm/elbow.position`.
+    pub name: String,
+    /// Standard deviation of the noise of each component; of an orientation about each axis, rad.
+    pub sigma: f64,
+    bias: Vec3,
+    /// Standard deviation of the bias' walk after a second.
+    walk: f64,
+    /// Step of the scale; zero for none.
+    step: f64,
+    /// Largest size of a component that it shows.
+    limit: Option<f64>,
+    /// How far and in which half angle (rad) about its z a camera sees.
+    sight: [Option<f64>; 2],
+}
+
+/// The quantities that a sensor reads; why it reads none.
+pub(crate) fn parts_of(sensor: &SensorSpec, model: &Model) -> Result<Vec<Part>, String> {
+    let own = |quantity: &str| format!("sensor.{}.{quantity}", sensor.name);
+    let plain = |quantity: &str, sigma: f64| Part { name: own(quantity), sigma, ..Part::default() };
+    match &sensor.kind {
         SensorKind::ContactForce { force_noise_n, torque_noise_n_m, .. }
         | SensorKind::MechanismForce { force_noise_n, torque_noise_n_m, .. } => {
-            vec![("force", force_noise_n), ("torque", torque_noise_n_m)]
+            Ok(vec![plain("force", *force_noise_n), plain("torque", *torque_noise_n_m)])
+        }
+        SensorKind::JointEncoder { joint, noise_deg, noise_m, resolution_deg, resolution_m, bias_deg, bias_m } => {
+            of_joints(model, joint, "position", |slides| match slides {
+                true => (*noise_m, *resolution_m, *bias_m),
+                false => (noise_deg.to_radians(), resolution_deg.to_radians(), bias_deg.to_radians()),
+            })
+        }
+        SensorKind::Tachometer { joint, noise_rad_per_s, noise_m_per_s } => {
+            of_joints(model, joint, "velocity", |slides| {
+                (if slides { *noise_m_per_s } else { *noise_rad_per_s }, 0.0, 0.0)
+            })
+        }
+        SensorKind::Imu {
+            gyro_noise_rad_per_s,
+            gyro_bias_rad_per_s,
+            gyro_walk_rad_per_s_sqrt_s,
+            gyro_limit_rad_per_s,
+            accelerometer_noise_m_per_s2,
+            accelerometer_bias_m_per_s2,
+            accelerometer_walk_m_per_s2_sqrt_s,
+            accelerometer_limit_m_per_s2,
+            ..
+        } => {
+            let part = |quantity: &str, [sigma, walk]: [f64; 2], bias: &[f64; 3], limit: Option<f64>| Part {
+                bias: Vec3::from(*bias),
+                walk,
+                limit,
+                ..plain(quantity, sigma)
+            };
+            let gyro = [*gyro_noise_rad_per_s, *gyro_walk_rad_per_s_sqrt_s];
+            let felt = [*accelerometer_noise_m_per_s2, *accelerometer_walk_m_per_s2_sqrt_s];
+            Ok(vec![
+                part("angular_velocity", gyro, gyro_bias_rad_per_s, *gyro_limit_rad_per_s),
+                part("specific_force", felt, accelerometer_bias_m_per_s2, *accelerometer_limit_m_per_s2),
+            ])
+        }
+        SensorKind::Pose { link, relative_to, position_noise_m, position_bias_m, attitude_noise_deg, pose, .. } => {
+            let subject = match relative_to.as_str() {
+                "world" if *pose != crate::spec::PoseSpec::default() || has_sight(&sensor.kind) => {
+                    return Err("sees from the world, where no camera stands: pose, range_m and field_of_view_deg are of one on \
+                                a link"
+                        .to_owned());
+                }
+                "world" => format!("body.{}", body_of(model, link)?),
+                _ => format!("sensor.{}", sensor.name),
+            };
+            let sight = sight_of(&sensor.kind);
+            let position = Part { name: format!("{subject}.position"), sigma: *position_noise_m, ..Part::default() };
+            let attitude = attitude_noise_deg.to_radians();
+            let orientation =
+                Part { name: format!("{subject}.orientation"), sigma: attitude, sight, ..Part::default() };
+            Ok(vec![Part { bias: Vec3::from(*position_bias_m), sight, ..position }, orientation])
         }
         // The build refuses what is not simulated.
-        SensorKind::JointEncoder { .. }
-        | SensorKind::Imu { .. }
-        | SensorKind::Pose { .. }
-        | SensorKind::ForceTorque { .. } => Vec::new(),
+        SensorKind::ForceTorque { .. } => Ok(Vec::new()),
     }
+}
+
+fn sight_of(kind: &SensorKind) -> [Option<f64>; 2] {
+    match kind {
+        SensorKind::Pose { range_m, field_of_view_deg, .. } => {
+            [*range_m, field_of_view_deg.map(|full| 0.5 * full.to_radians())]
+        }
+        _ => [None; 2],
+    }
+}
+
+fn has_sight(kind: &SensorKind) -> bool {
+    sight_of(kind).iter().any(Option::is_some)
+}
+
+/// A quantity of every joint that a pattern means; its noise, scale and bias by whether the joint slides.
+fn of_joints(
+    model: &Model,
+    pattern: &str,
+    quantity: &str,
+    errors: impl Fn(bool) -> (f64, f64, f64),
+) -> Result<Vec<Part>, String> {
+    let full = |vehicle: &str, joint: &str| format!("{vehicle}/{joint}");
+    let part = |(vehicle, joint, at): (&str, &str, usize)| {
+        let (sigma, step, bias) = errors(slides(model, at));
+        let name = format!("joint.{}.{quantity}", full(vehicle, joint));
+        Part { name, sigma, step, bias: Vec3::new(bias, 0.0, 0.0), ..Part::default() }
+    };
+    let found: Vec<Part> = joints(model).filter(|(v, j, _)| glob_matches(pattern, &full(v, j))).map(part).collect();
+    match found.is_empty() {
+        true => Err(format!("\"{pattern}\" is no joint that turns or slides by itself")),
+        false => Ok(found),
+    }
+}
+
+fn slides(model: &Model, coordinate: usize) -> bool {
+    let vehicle = model.vehicles.iter().find(|v| v.v_range().contains(&coordinate));
+    let joint = vehicle.and_then(|v| v.tree.joints.iter().find(|j| !j.is_mimic && v.v0 + j.v_index == coordinate));
+    joint.is_some_and(|j| j.kind == JointKind::Prismatic)
+}
+
+/// A link as recordings call it: the base by its vehicle.
+fn body_of(model: &Model, link: &str) -> Result<String, String> {
+    let found = links(model).find(|(vehicle, name, _)| link == format!("{vehicle}/{name}"));
+    match found {
+        Some((vehicle, _, (_, 0))) => Ok(vehicle.to_owned()),
+        Some(_) => Ok(link.to_owned()),
+        None => Err(format!("no link \"{link}\"")),
+    }
+}
+
+/// Age at which a scenario's own sensor of a quantity tells it, s; by any of the quantity's names.
+pub(crate) fn delay_of(scenario: &Scenario, model: &Model, quantity: &str) -> f64 {
+    // Asked for every channel of every model that a search builds.
+    let late = scenario.sensors.iter().filter(|s| s.delay_s > 0.0);
+    let meant = |name: &str| Gauge::resolve(scenario, model, name).ok();
+    let reads = |s: &&SensorSpec| {
+        let parts = parts_of(s, model).unwrap_or_default();
+        parts.iter().any(|part| part.name == quantity || meant(&part.name) == meant(quantity))
+    };
+    let mut late = late.filter(reads);
+    late.next().map_or(0.0, |s| s.delay_s)
 }
 
 /// Recorded quantities other than sensors' own whose reading an effect faults.
@@ -93,48 +234,84 @@ struct Timing {
     rate: Option<f64>,
     /// Age of a reading when it arrives, s.
     delay: f64,
+    /// Share of readings that never do.
+    dropout: f64,
 }
+
+/// A reading: when it arrives, s, and what it says; of an orientation w, x, y, z.
+pub(crate) type Arrival = (f64, [f64; 4]);
 
 /// One quantity, as its sensor reads it.
 #[derive(Debug)]
 pub(crate) struct Sensor {
     name: String,
+    part: Part,
     gauge: Gauge,
     faults: SensorModel,
-    sigma: f64,
-    rate: Option<f64>,
-    delay: f64,
+    timing: Timing,
     channels: Vec<ChannelSpec>,
     random: ChaCha8Rng,
     /// Number of the reading that is due next.
     next: f64,
-    /// Readings on their way: when they arrive, s, and what they say.
-    sent: VecDeque<(f64, [f64; 4])>,
+    /// What the bias has walked by, and when it was seen last, s.
+    walked: (Vec3, f64),
+    /// Readings on their way.
+    sent: VecDeque<Arrival>,
 }
 
 impl Sensor {
-    fn new(scenario: &Scenario, model: &Model, name: &str, (sigma, timing): (f64, Timing)) -> Option<Self> {
-        let gauge = Gauge::resolve(scenario, model, name).ok()?;
-        let faults = SensorModel::of(&scenario.effects, model, name);
+    fn new(scenario: &Scenario, model: &Model, part: Part, timing: Timing) -> Option<Self> {
+        let gauge = Gauge::resolve(scenario, model, &part.name).ok()?;
+        let faults = SensorModel::of(&scenario.effects, model, &part.name);
         let mut random = ChaCha8Rng::seed_from_u64(scenario.seed);
-        random.set_stream(hash(name));
+        random.set_stream(hash(&part.name));
         Some(Self {
-            name: name.to_owned(),
+            name: part.name.clone(),
             gauge,
             faults,
-            sigma,
-            rate: timing.rate,
-            delay: timing.delay + faults.delay,
-            channels: channels(model, name),
+            timing: Timing { delay: timing.delay + faults.delay, ..timing },
+            channels: channels(model, &part.name, gauge.quantity()),
+            part,
             random,
             next: 0.0,
+            walked: (Vec3::zeros(), 0.0),
             sent: VecDeque::new(),
         })
     }
 
+    /// The channels that it writes, in the order of an [`Arrival`]'s numbers.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        self.channels.iter().map(|spec| spec.name.as_str())
+    }
+
+    /// The quantity that it reads, and the standard deviation of its noise.
+    pub(crate) fn noise(&self) -> (&str, f64) {
+        (&self.part.name, self.part.sigma)
+    }
+
+    /// The numbers of a reading that its channels show.
+    pub(crate) fn shown(&self, reading: [f64; 4]) -> impl Iterator<Item = f64> {
+        // A driven quantity has the components that are driven.
+        let component = |spec: &ChannelSpec| match ChannelName::parse(&spec.name).map_or("", |name| name.component) {
+            "x" if self.channels.len() == 4 => 1,
+            "y" if self.channels.len() == 4 => 2,
+            "z" if self.channels.len() == 4 => 3,
+            "y" => 1,
+            "z" => 2,
+            _ => 0,
+        };
+        self.channels.iter().map(move |spec| reading[component(spec)])
+    }
+
+    /// The next reading that has arrived by now.
+    pub(crate) fn arrived(&mut self, world: &World) -> Option<Arrival> {
+        let now = world.state().time + ROUNDING * world.model().step;
+        self.sent.pop_front_if(|(arrives, _)| *arrives <= now)
+    }
+
     /// Whether a reading is due, and which comes then.
     fn is_due(&mut self, world: &World) -> bool {
-        let Some(rate) = self.rate else { return true };
+        let Some(rate) = self.timing.rate else { return true };
         let ticks = (world.state().time + ROUNDING * world.model().step) * rate;
         if ticks < self.next {
             return false;
@@ -143,29 +320,73 @@ impl Sensor {
         true
     }
 
-    /// The value that the sensor gives for the world as it is.
-    fn reading(&mut self, world: &World) -> [f64; 4] {
+    /// Three standard normal numbers.
+    fn normal(&mut self) -> Vec3 {
+        Vec3::from_fn(|_, _| StandardNormal.sample(&mut self.random))
+    }
+
+    /// The value that the sensor gives for the world as it is; none where it is lost.
+    fn reading(&mut self, world: &World) -> Option<[f64; 4]> {
         // Drawn whether or not there is noise, so that another level scales it and draws no other.
-        let mut normal = |_, _| -> f64 { StandardNormal.sample(&mut self.random) };
-        let noise = self.sigma * Vec3::from_fn(&mut normal);
-        match self.faults.apply(&self.gauge.read(world)) {
-            Reading::Scalar(x) => [x + noise.x, 0.0, 0.0, 0.0],
-            Reading::Vector(v) => [v.x + noise.x, v.y + noise.y, v.z + noise.z, 0.0],
-            Reading::Rotation(q) => [q.w, q.i, q.j, q.k],
+        let noise = self.part.sigma * self.normal();
+        if self.part.walk > 0.0 {
+            let since = world.state().time - self.walked.1;
+            self.walked = (self.walked.0 + self.part.walk * since.sqrt() * self.normal(), world.state().time);
         }
+        let is_lost = self.timing.dropout > 0.0 && uniform(&mut self.random) < self.timing.dropout;
+        if is_lost || !self.sees(world) {
+            return None;
+        }
+        let off = self.part.bias + self.walked.0 + noise;
+        let shown = |x: f64| {
+            let clipped = self.part.limit.map_or(x, |limit| x.clamp(-limit, limit));
+            if self.part.step > 0.0 { (clipped / self.part.step).round() * self.part.step } else { clipped }
+        };
+        Some(match self.faults.apply(&self.gauge.read(world)) {
+            Reading::Scalar(x) => [shown(x + off.x), 0.0, 0.0, 0.0],
+            Reading::Vector(v) => [shown(v.x + off.x), shown(v.y + off.y), shown(v.z + off.z), 0.0],
+            Reading::Rotation(q) => {
+                let q = q * exp_rotation(&off);
+                [q.w, q.i, q.j, q.k]
+            }
+        })
+    }
+
+    /// Whether what a camera looks at is where it sees.
+    fn sees(&self, world: &World) -> bool {
+        let (Quantity::SeenPosition(sight) | Quantity::SeenOrientation(sight)) = self.gauge.quantity() else {
+            return true;
+        };
+        let [range, half] = self.part.sight;
+        let at = sight.calc_position(world);
+        range.is_none_or(|range| at.norm() <= range) && half.is_none_or(|half| at.xy().norm().atan2(at.z) <= half)
     }
 }
 
-/// Its channels: those that the recorder has for it, or, of a force sensor, three components.
-fn channels(model: &Model, name: &str) -> Vec<ChannelSpec> {
+/// A number from 0 to 1.
+fn uniform(random: &mut ChaCha8Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 * (0.5f64).powi(53)
+}
+
+/// Its channels: those that the recorder has for it, or its components.
+fn channels(model: &Model, name: &str, quantity: Quantity) -> Vec<ChannelSpec> {
     let is_own = |spec: &ChannelSpec| whole(&spec.name).as_deref() == Some(name);
     let standard: Vec<ChannelSpec> = record::standard_channels(model).into_iter().filter(is_own).collect();
     if !standard.is_empty() {
         return standard.into_iter().map(|spec| spec.described("as its sensor reads it")).collect();
     }
-    let unit = if name.ends_with("torque") { "N·m" } else { "N" };
-    let channel = |k| ChannelSpec::new(format!("{name}.{k}"), unit, Plot::Sensors).described("as the sensor reads it");
-    ["x", "y", "z"].map(channel).into()
+    let unit = match quantity {
+        Quantity::SensorRate(_) => "rad/s",
+        Quantity::SpecificForce(_) => "m/s²",
+        Quantity::SeenPosition(_) | Quantity::Position(..) => "m",
+        Quantity::Torque(_) => "N·m",
+        Quantity::Force(_) => "N",
+        _ => "1",
+    };
+    let components: &[&str] = if quantity.is_orientation() { &["w", "x", "y", "z"] } else { &["x", "y", "z"] };
+    let channel =
+        |k: &&str| ChannelSpec::new(format!("{name}.{k}"), unit, Plot::Sensors).described("as the sensor reads it");
+    components.iter().map(channel).collect()
 }
 
 /// FNV-1a: a stream of random numbers for every name.
@@ -180,27 +401,18 @@ impl Probe for Sensor {
     }
 
     fn observe(&mut self, world: &World) {
-        if self.is_due(world) {
-            let reading = self.reading(world);
-            self.sent.push_back((world.state().time + self.delay, reading));
+        if self.is_due(world)
+            && let Some(reading) = self.reading(world)
+        {
+            self.sent.push_back((world.state().time + self.timing.delay, reading));
         }
     }
 
     fn read(&mut self, world: &World, values: &mut Vec<f64>) {
-        let now = world.state().time + ROUNDING * world.model().step;
         let mut last = [f64::NAN; 4];
-        while let Some((_, reading)) = self.sent.pop_front_if(|(arrives, _)| *arrives <= now) {
+        while let Some((_, reading)) = self.arrived(world) {
             last = reading;
         }
-        // A driven quantity has the components that are driven.
-        let component = |spec: &ChannelSpec| match ChannelName::parse(&spec.name).map_or("", |name| name.component) {
-            "x" if self.channels.len() == 4 => 1,
-            "y" if self.channels.len() == 4 => 2,
-            "z" if self.channels.len() == 4 => 3,
-            "y" => 1,
-            "z" => 2,
-            _ => 0,
-        };
-        values.extend(self.channels.iter().map(|spec| last[component(spec)]));
+        values.extend(self.shown(last));
     }
 }

@@ -11,7 +11,7 @@ use crate::mechanism::{Mechanism, MechanismKind};
 use contact::{Collider, Normal, Scene};
 use friction::{Friction, Pivot};
 use multibody::{JointKind, Tree};
-use spatial::{Frame, Pose, Vec3};
+use spatial::{Frame, Inertia, Pose, Vec3};
 
 /// How a vehicle's base moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -294,6 +294,12 @@ impl Model {
         crate::dead_weight::attach(&mut model)?;
         model.speed_limited = speed_limited(&model.coordinates);
         Ok(model)
+    }
+
+    /// Acceleration of what falls freely at a point of W, m/s², W axes: gravity, tide, tilt.
+    pub fn calc_field(&self, time: f64, point: &Vec3) -> Vec3 {
+        let unit = Inertia { mass: 1.0, ..Inertia::default() };
+        self.environment.calc_wrench(time, point, &unit).force + self.effects.tilt
     }
 
     /// The effects in their order.

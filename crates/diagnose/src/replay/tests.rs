@@ -1,7 +1,7 @@
 use super::*;
 use crate::plant::Plant;
 use crate::reading::Reading;
-use crate::tape::CommandTape;
+use crate::tape::{CommandTape, Commanded};
 use record::Role;
 use scenario::spec::{Effect, ParamValue};
 use spatial::Twist;
@@ -151,8 +151,8 @@ fn what_is_handed_on_at_a_tick_remembers_what_the_drive_gave() {
     let reading = Reading { channel, quantity: gauge.quantity(), axes: vec![0], sigma: 1.0, times, values };
     // A torque that changes its sign with every tick of 10 ms.
     let ticks: Vec<f64> = (0..100).map(|i| f64::from(i) * 1e-2).collect();
-    let efforts = (0..100).map(|i| if i % 2 == 0 { 2.0 } else { -1.0 }).collect();
-    let commands = vec![CommandTape { actuator: 0, times: ticks, efforts }];
+    let values = (0..100).map(|i| if i % 2 == 0 { 2.0 } else { -1.0 }).collect();
+    let commands = vec![CommandTape { actuator: 0, what: Commanded::Effort, times: ticks, values }];
     let tape = Tape::assemble(("swing", Role::Fit), commands, vec![reading]);
     let (start, pace) = (Start::nominal(&built), Pace::even(1e-3));
     let read = |start: &Start, from: f64| {

@@ -216,6 +216,21 @@ struct Smaller {
     power: f64,
 }
 
+/// A set that leaves next to nothing.
+struct Enough {
+    titles: Vec<String>,
+    /// Its price, and what may yet be gained beside it.
+    limit: f64,
+}
+
+impl Enough {
+    /// Whether a larger set is not worth a fit: what adds to one that leaves nothing adds nothing, and what costs more than that and all that it leaves
+    /// cannot be better by the criterion.
+    fn outdoes(&self, titles: &[String], price: f64) -> bool {
+        titles.len() > self.titles.len() && price > self.limit || self.titles.iter().all(|t| titles.contains(t))
+    }
+}
+
 /// Fits the sets that promise most in full simulation; the best of them, taken to the end, where it is worth its price.
 fn fit_sets(
     problem: &Problem<'_>,
@@ -230,15 +245,17 @@ fn fit_sets(
     let mut worthy: Vec<(usize, Fitted)> = Vec::new();
     let mut smaller: Vec<Smaller> = Vec::new();
     let (pool, watch) = (&looked.pool, problem.stage.work.watch);
-    let [mut done, mut refuted, mut enough] = [const { Vec::<Vec<String>>::new() }; 3];
+    let [mut done, mut refuted] = [const { Vec::<Vec<String>>::new() }; 2];
+    let mut enough: Vec<Enough> = Vec::new();
     while let Some(set) = next_of(proposals(looked, now, &refuted), pool, &done) {
         if done.len() == ALL_FITTED || problem.stage.work.is_spent(Until::Search) {
             break;
         }
         let added: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
         done.push(pool.titles(set.members.iter().map(|m| m.0)));
-        // What adds to a set that leaves nothing adds nothing.
-        if enough.iter().any(|known| known.iter().all(|t| added.contains(t))) {
+        let entries: Vec<usize> = set.members.iter().map(|m| m.0).collect();
+        let costs = pool.price(&entries, now.count);
+        if enough.iter().any(|known| known.outdoes(&added, costs)) {
             continue;
         }
         let fit = fit_first(problem, now, &set, pool, (many, here));
@@ -260,7 +277,7 @@ fn fit_sets(
             refuted.push(added.clone());
         }
         if left.rise < cheapest || power < NEXT_TO_NOTHING * here {
-            enough.push(added.clone());
+            enough.push(Enough { titles: added.clone(), limit: costs + left.rise });
         }
         // What a set adds to a smaller one has to take its part of what that leaves.
         let is_idle = |known: &Smaller| {

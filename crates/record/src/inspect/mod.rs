@@ -123,7 +123,7 @@ pub fn sigma_of(report: &ChannelReport) -> Option<f64> {
 }
 
 pub(crate) fn is_orientation(channel: &str) -> bool {
-    ChannelName::parse(channel).is_some_and(|name| name.quantity == Quantity::BodyOrientation)
+    ChannelName::parse(channel).is_some_and(|name| name.quantity.is_orientation())
 }
 
 fn run_report(run: &crate::RecordedRun) -> RunReport {
@@ -168,7 +168,7 @@ fn channel_report(set: &RecordingSet, channel: &str, series: &[&Series]) -> Chan
 
 /// Median over the runs.
 fn noise_of(set: &RecordingSet, channel: &str) -> Option<f64> {
-    match ChannelName::parse(channel).filter(|name| name.quantity == Quantity::BodyOrientation) {
+    match ChannelName::parse(channel).filter(|name| name.quantity.is_orientation()) {
         Some(name) => noise_of_parts(set, &["w", "x", "y", "z"].map(|part| format!("{}.{part}", name.prefix))),
         None => noise_of_parts(set, &[channel.to_owned()]),
     }

@@ -1,6 +1,6 @@
 //! From the manifest and its files to runs of series.
 
-use super::channel_name::{self, ChannelName, Quantity};
+use super::channel_name::{self, ChannelName};
 use super::group::{self, Stretch};
 use super::manifest::{self, Manifest, RunEntry};
 use super::quantum::find_quantum;
@@ -187,7 +187,7 @@ fn read_stretch(
     let mut merged = 0;
     for source in sources {
         match source.name.quantity {
-            Quantity::BodyOrientation => {}
+            quantity if quantity.is_orientation() => {}
             quantity => {
                 let merge = if quantity.is_command() { Merge::Last } else { Merge::Mean };
                 let (times, values, again) = time::samples(&timeline, source.values, merge);
@@ -244,7 +244,7 @@ fn add_orientations(
         ["w", "x", "y", "z"].map(|c| sources.iter().find(|s| s.name.prefix == prefix && s.name.component == c))
     };
     let mut prefixes: Vec<&str> =
-        sources.iter().filter(|s| s.name.quantity == Quantity::BodyOrientation).map(|s| s.name.prefix).collect();
+        sources.iter().filter(|s| s.name.quantity.is_orientation()).map(|s| s.name.prefix).collect();
     prefixes.dedup();
     for prefix in prefixes {
         let [Some(w), Some(x), Some(y), Some(z)] = parts(prefix) else {

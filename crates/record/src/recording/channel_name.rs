@@ -13,8 +13,12 @@ pub enum Quantity {
     JointLinkPosition,
     /// Rate there, rad/s or m/s.
     JointLinkVelocity,
-    /// What the controller asked of a drive, N·m or N.
+    /// What the controller asked of a drive, N·m or N; of a position or rate loop its feed-forward.
     JointEffortCommand,
+    /// Reference of a position loop, rad or m.
+    JointPositionCommand,
+    /// Reference of a rate loop, rad/s or m/s.
+    JointVelocityCommand,
     /// Torque sensor of a joint, N·m or N.
     JointEffort,
     /// Origin of a body in the world, m.
@@ -29,6 +33,14 @@ pub enum Quantity {
     SensorForce,
     /// Torque likewise, N·m.
     SensorTorque,
+    /// Gyro in its own axes, rad/s.
+    SensorAngularVelocity,
+    /// Accelerometer in its own axes, m/s².
+    SensorSpecificForce,
+    /// Origin of what a camera sees in the camera's axes, m.
+    SensorPosition,
+    /// Quaternion that rotates vectors of what a camera sees into the camera's axes.
+    SensorOrientation,
     /// Valve, wheel torque, gripper force.
     ActuatorCommand,
     /// Prescribed motion of a driven part, m.
@@ -38,12 +50,14 @@ pub enum Quantity {
 }
 
 /// Family, name of the quantity in files, number of components (1: a scalar), what it is.
-const TABLE: [(&str, &str, &[&str], Quantity); 15] = [
+const TABLE: [(&str, &str, &[&str], Quantity); 21] = [
     ("joint", "position", &[], Quantity::JointPosition),
     ("joint", "velocity", &[], Quantity::JointVelocity),
     ("joint", "link_position", &[], Quantity::JointLinkPosition),
     ("joint", "link_velocity", &[], Quantity::JointLinkVelocity),
     ("joint", "effort_command", &[], Quantity::JointEffortCommand),
+    ("joint", "position_command", &[], Quantity::JointPositionCommand),
+    ("joint", "velocity_command", &[], Quantity::JointVelocityCommand),
     ("joint", "effort", &[], Quantity::JointEffort),
     ("body", "position", &XYZ, Quantity::BodyPosition),
     ("body", "orientation", &WXYZ, Quantity::BodyOrientation),
@@ -51,6 +65,10 @@ const TABLE: [(&str, &str, &[&str], Quantity); 15] = [
     ("body", "angular_velocity", &XYZ, Quantity::BodyAngularVelocity),
     ("sensor", "force", &XYZ, Quantity::SensorForce),
     ("sensor", "torque", &XYZ, Quantity::SensorTorque),
+    ("sensor", "angular_velocity", &XYZ, Quantity::SensorAngularVelocity),
+    ("sensor", "specific_force", &XYZ, Quantity::SensorSpecificForce),
+    ("sensor", "position", &XYZ, Quantity::SensorPosition),
+    ("sensor", "orientation", &WXYZ, Quantity::SensorOrientation),
     ("actuator", "command", &[], Quantity::ActuatorCommand),
     ("drive", "position", &XYZ, Quantity::DrivePosition),
     ("drive", "angle", &[], Quantity::DriveAngle),
@@ -62,14 +80,19 @@ impl Quantity {
     /// What its unit may measure: a joint turns or slides.
     pub fn dimensions(self) -> &'static [Dimension] {
         match self {
-            Self::JointPosition | Self::JointLinkPosition => &[Dimension::Angle, Dimension::Length],
-            Self::JointVelocity | Self::JointLinkVelocity => &[Dimension::Rate, Dimension::Speed],
+            Self::JointPosition | Self::JointLinkPosition | Self::JointPositionCommand => {
+                &[Dimension::Angle, Dimension::Length]
+            }
+            Self::JointVelocity | Self::JointLinkVelocity | Self::JointVelocityCommand => {
+                &[Dimension::Rate, Dimension::Speed]
+            }
             Self::JointEffortCommand | Self::JointEffort => &[Dimension::Torque, Dimension::Force],
-            Self::BodyPosition | Self::DrivePosition => &[Dimension::Length],
+            Self::BodyPosition | Self::DrivePosition | Self::SensorPosition => &[Dimension::Length],
             Self::DriveAngle => &[Dimension::Angle],
-            Self::BodyOrientation => &[Dimension::Number],
+            Self::BodyOrientation | Self::SensorOrientation => &[Dimension::Number],
+            Self::SensorSpecificForce => &[Dimension::Acceleration],
             Self::BodyLinearVelocity => &[Dimension::Speed],
-            Self::BodyAngularVelocity => &[Dimension::Rate],
+            Self::BodyAngularVelocity | Self::SensorAngularVelocity => &[Dimension::Rate],
             Self::SensorForce => &[Dimension::Force],
             Self::SensorTorque => &[Dimension::Torque],
             Self::ActuatorCommand => &[Dimension::Force, Dimension::Torque, Dimension::Number],
@@ -79,8 +102,8 @@ impl Quantity {
     /// SI unit as printed, both where a joint may turn or slide.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::JointPosition | Self::JointLinkPosition => "rad|m",
-            Self::JointVelocity | Self::JointLinkVelocity => "rad/s|m/s",
+            Self::JointPosition | Self::JointLinkPosition | Self::JointPositionCommand => "rad|m",
+            Self::JointVelocity | Self::JointLinkVelocity | Self::JointVelocityCommand => "rad/s|m/s",
             Self::JointEffortCommand | Self::JointEffort => "N·m|N",
             Self::ActuatorCommand => "",
             _ => self.dimensions()[0].si(),
@@ -92,9 +115,17 @@ impl Quantity {
         matches!(self, Self::JointEffort | Self::SensorForce | Self::SensorTorque)
     }
 
+    /// Whether it is a quaternion.
+    pub fn is_orientation(self) -> bool {
+        matches!(self, Self::BodyOrientation | Self::SensorOrientation)
+    }
+
     /// Whether it was asked for and not measured: it has no noise.
     pub fn is_command(self) -> bool {
-        matches!(self, Self::JointEffortCommand | Self::ActuatorCommand)
+        matches!(
+            self,
+            Self::JointEffortCommand | Self::JointPositionCommand | Self::JointVelocityCommand | Self::ActuatorCommand
+        )
     }
 }
 

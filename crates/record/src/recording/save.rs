@@ -18,6 +18,31 @@ impl RecordingSet {
         write_file(&folder.join(super::manifest::FILE), self.manifest().as_bytes())
     }
 
+    /// Adds the runs of this set to the one in a folder, or begins it: files of runs are those that it has not yet, `run-01.csv`, `run-02.csv`, …
+    ///
+    /// Errors: what is there is no set, or one of another rig.
+    pub fn append_to(mut self, folder: &Path) -> Result<Vec<String>, RecordError> {
+        let manifest = folder.join(super::manifest::FILE);
+        let known = if manifest.exists() { Some(Self::load(folder)?) } else { None };
+        if let Some(known) = known.as_ref().filter(|known| known.rig != self.rig) {
+            let problem = format!("is of the rig \"{}\", not \"{}\"; record into another folder", known.rig, self.rig);
+            return Err(RecordError::table(&manifest, problem));
+        }
+        let first = known.as_ref().map_or(0, |known| known.runs.len());
+        for (i, run) in self.runs.iter_mut().enumerate() {
+            run.file = format!("run-{:02}.csv", first + i + 1);
+            write_file(&folder.join(&run.file), encode(run).as_bytes())?;
+        }
+        let added = self.runs.iter().map(|run| run.file.clone()).collect();
+        if let Some(mut known) = known {
+            known.noise.append(&mut self.noise);
+            known.runs.append(&mut self.runs);
+            (self.noise, self.runs, self.title, self.window_s) = (known.noise, known.runs, known.title, known.window_s);
+        }
+        write_file(&manifest, self.manifest().as_bytes())?;
+        Ok(added)
+    }
+
     fn manifest(&self) -> String {
         let quoted = |text: &str| Value::from(text).to_string();
         let mut text = format!("format = 1\nrig = {}\ntitle = {}\n", quoted(&self.rig), quoted(&self.title));

@@ -11,6 +11,8 @@ pub enum Dimension {
     Speed,
     /// rad/s
     Rate,
+    /// m/s²
+    Acceleration,
     /// N
     Force,
     /// N·m
@@ -29,6 +31,7 @@ impl Dimension {
             Self::Angle => "rad",
             Self::Speed => "m/s",
             Self::Rate => "rad/s",
+            Self::Acceleration => "m/s²",
             Self::Force => "N",
             Self::Torque => "N·m",
             Self::Time => "s",
@@ -84,6 +87,9 @@ pub const UNITS: &[Unit] = &[
     unit("deg/h", Dimension::Rate, DEG / 3600.0),
     unit("rev/s", Dimension::Rate, TURN),
     unit("rpm", Dimension::Rate, TURN / 60.0),
+    unit("m/s²", Dimension::Acceleration, 1.0),
+    unit("m/s^2", Dimension::Acceleration, 1.0),
+    unit("g", Dimension::Acceleration, 9.80665),
     unit("N", Dimension::Force, 1.0),
     unit("mN", Dimension::Force, 1e-3),
     unit("uN", Dimension::Force, 1e-6),

@@ -29,6 +29,8 @@ pub use shapes::shape_of_geometry;
 pub use stock::Stock;
 
 use crate::error::ScenarioErrors;
+use crate::measure::Gauge;
+use crate::sensors::Part;
 use crate::spec::{self, Scenario};
 use crate::strategy;
 use multibody::{RobotDescription, UrdfWarnings};
@@ -158,8 +160,8 @@ fn refuse_what_is_not_simulated(scenario: &Scenario, faults: &mut Faults<'_>) {
     for (i, sensor) in scenario.sensors.iter().enumerate().filter(|(_, s)| !s.kind.is_simulated()) {
         let reason = format!(
             "sensors of kind {} are not simulated in this version; joints and bodies are recorded as they are \
-             (joint.….position, body.….angular_velocity, …), with faults by an [[effect]] at sensor:…, and a [[sensor]] can be of \
-             kind contact-force or mechanism-force; remove the entry",
+             (joint.….position, body.….angular_velocity, …), and a [[sensor]] can be of kind joint-encoder, tachometer, imu, pose, \
+             contact-force or mechanism-force; remove the entry",
             sensor.kind.text()
         );
         faults.add(&format!("sensor[{i}].kind"), reason);
@@ -174,9 +176,13 @@ fn check_sensors(scenario: &Scenario, model: &Model, faults: &mut Faults<'_>) {
         }
     }
     for (i, sensor) in scenario.sensors.iter().enumerate() {
-        let name = format!("sensor.{}.force", sensor.name);
-        if let Err(error) = crate::measure::Gauge::resolve(scenario, model, &name) {
-            faults.add(&format!("sensor[{i}]"), error.fault);
+        let place = format!("sensor[{i}]");
+        match crate::sensors::parts_of(sensor, model) {
+            Err(fault) => faults.add(&place, fault),
+            Ok(parts) => {
+                let resolved = |part: &Part| Gauge::resolve(scenario, model, &part.name).err().map(|e| e.fault);
+                parts.iter().filter_map(resolved).take(1).for_each(|fault| faults.add(&place, fault));
+            }
         }
     }
 }

@@ -145,7 +145,7 @@ impl SensorFact {
 
     /// Whether it reads an orientation.
     pub fn is_orientation(&self) -> bool {
-        matches!(self.quantity, Quantity::Orientation(..))
+        self.quantity.is_orientation()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::contact_geometry_offset::{CONTACT_GEOMETRY_OFFSET, TURN};
 use super::*;
-use crate::measure::{Gauge, Quantity};
+use crate::measure::Gauge;
 use parameter::{ANY, zero};
 use unit::NONE;
 
@@ -77,7 +77,7 @@ pub static SENSOR_SCALE: EffectDef = EffectDef {
 };
 
 fn orientations_have_none(gauges: &[Gauge]) -> Option<&'static str> {
-    let turns = |g: &Gauge| matches!(g.quantity(), Quantity::Orientation(..));
+    let turns = |g: &Gauge| g.quantity().is_orientation();
     let fault = "an orientation has neither bias nor scale; use sensor-misalignment";
     gauges.iter().all(turns).then_some(fault)
 }

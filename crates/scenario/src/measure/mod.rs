@@ -12,16 +12,21 @@
 //! | `body.….position`, `.linear_velocity` | the link frame's origin, W axes |
 //! | `body.….orientation`, `.angular_velocity` | link axes in W; rate in link axes, as a gyro |
 //! | `sensor.….force`, `.torque` | see [`crate::spec::SensorKind`]: contact-force, mechanism-force |
+//! | `sensor.….angular_velocity`, `.specific_force` | of kind imu: gyro and accelerometer, its axes |
+//! | `sensor.….position`, `.orientation` | of kind pose, seen from a link: the other link in the camera's axes |
 //! | `drive.….position`, `.angle` | where the drive is, in the axes of its frame |
 //! | `actuator.….command` | what the controller asked for |
 //!
 //! A contact force is that of the instant only after [`World::refresh_touches`]; without it, that of the last step.
 
 mod force;
+mod motion;
 mod resolve;
 mod sensor;
 
 pub use force::{ForceGauge, Mount};
+pub use motion::{Seat, Sight};
+pub(crate) use resolve::{joints, links};
 pub use sensor::SensorModel;
 pub(crate) use sensor::{SensorEntry, find_fault};
 
@@ -81,6 +86,14 @@ pub enum Quantity {
     Force(ForceGauge),
     /// Of a force sensor, N·m.
     Torque(ForceGauge),
+    /// Of a gyro, its axes, rad/s.
+    SensorRate(Seat),
+    /// Of an accelerometer, its axes, m/s².
+    SpecificForce(Seat),
+    /// Of a camera, its axes, m.
+    SeenPosition(Sight),
+    /// Of a camera: axes of what it sees in its own.
+    SeenOrientation(Sight),
     /// Displacement of a drive, axes of its frame, m.
     DrivePosition(usize),
     /// Turn of a drive, rad.
@@ -97,6 +110,11 @@ impl Quantity {
             self,
             JointPosition(_) | JointVelocity(_) | JointLinkPosition(_) | JointLinkVelocity(_) | JointEffort(_)
         )
+    }
+
+    /// Whether it is an orientation.
+    pub fn is_orientation(self) -> bool {
+        matches!(self, Self::Orientation(..) | Self::SeenOrientation(_))
     }
 }
 
@@ -130,6 +148,10 @@ impl Gauge {
             }
             Quantity::Force(gauge) => Reading::Vector(gauge.calc_wrench(world).force),
             Quantity::Torque(gauge) => Reading::Vector(gauge.calc_wrench(world).moment),
+            Quantity::SensorRate(seat) => Reading::Vector(seat.calc_rate(world)),
+            Quantity::SpecificForce(seat) => Reading::Vector(seat.calc_specific_force(world)),
+            Quantity::SeenPosition(sight) => Reading::Vector(sight.calc_position(world)),
+            Quantity::SeenOrientation(sight) => Reading::Rotation(sight.calc_orientation(world)),
             Quantity::DrivePosition(k) => {
                 let (drive, now) = drive(k);
                 Reading::Vector(drive.calc_displacement(now))
@@ -182,9 +204,8 @@ impl Meter {
     pub fn resolve(scenario: &Scenario, model: &Model, channel: &str) -> Result<Self, MeasureError> {
         let (name, component) = resolve::split(channel);
         let gauge = Gauge::resolve(scenario, model, name)?;
-        let sensor = SensorModel::of(&scenario.effects, model, name);
-        let orientation = matches!(gauge.quantity, Quantity::Orientation(..));
-        match resolve::component(gauge.is_scalar(), orientation, component) {
+        let sensor = SensorModel::late(scenario, model, name);
+        match resolve::component(gauge.is_scalar(), gauge.quantity.is_orientation(), component) {
             Some(component) => Ok(Self { gauge, sensor, component }),
             None => Err(MeasureError {
                 channel: channel.to_owned(),

@@ -2,6 +2,7 @@
 
 use super::Quantity;
 use super::force::{ForceGauge, Mount};
+use super::motion::{Seat, Sight};
 use crate::spec::{MechanismEnd, Scenario, SensorKind};
 use crate::spelling::hint_for_name;
 use multibody::{Joint, JointKind};
@@ -42,6 +43,10 @@ pub(super) fn quantity(scenario: &Scenario, model: &Model, name: &str) -> Result
         ("body", "angular_velocity") => link(model, name).map(|(v, l)| Quantity::AngularVelocity(v, l)),
         ("sensor", "force") => Ok(Quantity::Force(force(scenario, model, name)?)),
         ("sensor", "torque") => Ok(Quantity::Torque(force(scenario, model, name)?)),
+        ("sensor", "angular_velocity") => Ok(Quantity::SensorRate(seat(scenario, model, name)?)),
+        ("sensor", "specific_force") => Ok(Quantity::SpecificForce(seat(scenario, model, name)?)),
+        ("sensor", "position") => Ok(Quantity::SeenPosition(sight(scenario, model, name)?)),
+        ("sensor", "orientation") => Ok(Quantity::SeenOrientation(sight(scenario, model, name)?)),
         ("drive", "position") => Ok(Quantity::DrivePosition(drive(model, name)?)),
         ("drive", "angle") => Ok(Quantity::DriveAngle(drive(model, name)?)),
         ("actuator", "command") => Ok(Quantity::Command(actuator(model, name)?)),
@@ -65,7 +70,7 @@ fn only<'a, T: Copy>(what: &str, text: &str, all: impl Iterator<Item = (&'a str,
 }
 
 /// Joints with a coordinate of their own: vehicle, name, index into the world's `v`.
-fn joints(model: &Model) -> impl Iterator<Item = (&str, &str, usize)> {
+pub(crate) fn joints(model: &Model) -> impl Iterator<Item = (&str, &str, usize)> {
     let single = |j: &&Joint| !j.is_mimic && matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
     model.vehicles.iter().flat_map(move |v| {
         v.tree.joints.iter().filter(single).map(|j| (v.name.as_str(), j.name.as_str(), v.v0 + j.v_index))
@@ -73,7 +78,7 @@ fn joints(model: &Model) -> impl Iterator<Item = (&str, &str, usize)> {
 }
 
 /// Links: vehicle, name, and both as indices.
-fn links(model: &Model) -> impl Iterator<Item = (&str, &str, (usize, usize))> {
+pub(crate) fn links(model: &Model) -> impl Iterator<Item = (&str, &str, (usize, usize))> {
     model.vehicles.iter().enumerate().flat_map(|(v, vehicle)| {
         vehicle.tree.links.iter().enumerate().map(move |(l, link)| (vehicle.name.as_str(), link.name.as_str(), (v, l)))
     })
@@ -91,7 +96,7 @@ fn link(model: &Model, name: &str) -> Result<(usize, usize), String> {
 const MEASURED: [(&str, &[&str]); 4] = [
     ("joint", &["position", "velocity", "link_position", "link_velocity", "effort"]),
     ("body", &["position", "orientation", "linear_velocity", "angular_velocity"]),
-    ("sensor", &["force", "torque"]),
+    ("sensor", &["force", "torque", "angular_velocity", "specific_force", "position", "orientation"]),
     ("drive", &["position", "angle"]),
 ];
 
@@ -158,12 +163,37 @@ fn actuator(model: &Model, name: &str) -> Result<usize, String> {
     model.actuators.iter().position(is).ok_or_else(|| format!("no actuator \"{name}\"{}", hint()))
 }
 
+fn sensor<'s>(scenario: &'s Scenario, name: &str) -> Result<&'s SensorKind, String> {
+    let hint = || hint_for_name(name, scenario.sensors.iter().map(|s| s.name.as_str()));
+    let found = scenario.sensors.iter().find(|s| s.name == name);
+    found.map(|s| &s.kind).ok_or_else(|| format!("no sensor \"{name}\"{}", hint()))
+}
+
+fn seat(scenario: &Scenario, model: &Model, name: &str) -> Result<Seat, String> {
+    match sensor(scenario, name)? {
+        SensorKind::Imu { link: on, pose, .. } => {
+            let (vehicle, link) = link(model, on)?;
+            Ok(Seat { vehicle, link, pose_ls: pose.pose() })
+        }
+        _ => Err(format!("sensor \"{name}\" is no imu")),
+    }
+}
+
+fn sight(scenario: &Scenario, model: &Model, name: &str) -> Result<Sight, String> {
+    match sensor(scenario, name)? {
+        SensorKind::Pose { relative_to, .. } if relative_to == "world" => {
+            Err(format!("sensor \"{name}\" sees from the world: what it reads is the body's own, body.….position"))
+        }
+        SensorKind::Pose { link: seen, relative_to, pose, .. } => {
+            let (of, (vehicle, link)) = (link(model, seen)?, link(model, relative_to)?);
+            Ok(Sight { of, from: Seat { vehicle, link, pose_ls: pose.pose() } })
+        }
+        _ => Err(format!("sensor \"{name}\" sees no pose")),
+    }
+}
+
 fn force(scenario: &Scenario, model: &Model, name: &str) -> Result<ForceGauge, String> {
-    let Some(sensor) = scenario.sensors.iter().find(|s| s.name == name) else {
-        let hint = hint_for_name(name, scenario.sensors.iter().map(|s| s.name.as_str()));
-        return Err(format!("no sensor \"{name}\"{hint}"));
-    };
-    match &sensor.kind {
+    match sensor(scenario, name)? {
         SensorKind::ContactForce { part, link: on, pose, .. } => {
             let (vehicle, link) = link(model, on)?;
             let (body, collider) = touched(model, part)?;

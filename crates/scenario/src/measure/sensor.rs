@@ -43,6 +43,13 @@ impl SensorModel {
         Self::of_names(effects, &synonyms(model, quantity))
     }
 
+    /// The same with the delay that the scenario's own sensor of it has.
+    pub fn late(scenario: &Scenario, model: &Model, quantity: &str) -> Self {
+        let mut sensor = Self::of(&scenario.effects, model, quantity);
+        sensor.delay += crate::sensors::delay_of(scenario, model, quantity);
+        sensor
+    }
+
     fn of_names(effects: &[Effect], names: &[String]) -> Self {
         let mut sensor = Self::default();
         for effect in effects {

@@ -2,8 +2,8 @@
 //!
 //! reading(t) = true value(t − delay) + bias + white noise of the given standard deviation, drawn at each sample.
 //!
-//! A run reads them so and records `sensor.<name>.force.{x,y,z}` and `.torque.{x,y,z}`. What a rig has recorded has its own
-//! instants and noise: a diagnosis takes place, frame and part from here, and the rest from the recording.
+//! A run reads them so, and `softdock run --record` writes what they read as a rig would. What a rig has recorded has its own
+//! instants and noise: a diagnosis takes place, frame, part and delay from here, and the rest from the recording.
 
 use super::pose::PoseSpec;
 use super::vehicle::world;
@@ -24,6 +24,10 @@ pub struct Sensor {
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub delay_s: f64,
+    /// Share of the readings that never arrive.
+    #[serde(default)]
+    #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 1.0))]
+    pub dropout: f64,
     /// What it measures, and its errors.
     #[serde(flatten)]
     pub kind: SensorKind,
@@ -38,7 +42,7 @@ fn default_rate() -> f64 {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum SensorKind {
-    /// Position of a joint, or of several.
+    /// Position of a joint, or of several: `joint.<joint>.position`, on the motor's side of a gear that yields.
     JointEncoder {
         /// The joint as `vehicle/joint`, or a glob.
         #[schemars(extend("x-refers" = "pattern"))]
@@ -55,11 +59,34 @@ pub enum SensorKind {
         #[serde(default)]
         #[schemars(range(min = 0.0))]
         resolution_deg: f64,
+        /// Step of a linear encoder's scale, m; zero for a continuous one.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        resolution_m: f64,
         /// Added to the angle, deg.
         #[serde(default)]
         bias_deg: f64,
+        /// Added to the displacement, m.
+        #[serde(default)]
+        bias_m: f64,
     },
-    /// Angular velocity and specific force of a link, in the sensor's axes.
+    /// Rate of a joint, or of several: `joint.<joint>.velocity`, on the same side.
+    Tachometer {
+        /// The joint as `vehicle/joint`, or a glob.
+        #[schemars(extend("x-refers" = "pattern"))]
+        joint: String,
+        /// Noise of an angular rate, standard deviation, rad/s.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        noise_rad_per_s: f64,
+        /// Noise of a speed, standard deviation, m/s.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        noise_m_per_s: f64,
+    },
+    /// Angular velocity and specific force of a link, in the sensor's axes: `sensor.<name>.angular_velocity` and `.specific_force`.
+    ///
+    /// Specific force is acceleration less that of free fall: what an accelerometer feels. A walk is a bias that drifts as the integral of white noise.
     Imu {
         /// Link it is fixed to, as `vehicle/link`.
         #[schemars(extend("x-refers" = "vehicle/part"))]
@@ -74,6 +101,14 @@ pub enum SensorKind {
         /// Added to the gyro's reading, rad/s.
         #[serde(default)]
         gyro_bias_rad_per_s: [f64; 3],
+        /// Walk of the gyro's bias: standard deviation after one second, rad/s per √s.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        gyro_walk_rad_per_s_sqrt_s: f64,
+        /// Largest rate that the gyro shows on an axis, rad/s; without it there is none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        gyro_limit_rad_per_s: Option<f64>,
         /// Noise of the accelerometer, standard deviation, m/s².
         #[serde(default)]
         #[schemars(range(min = 0.0))]
@@ -81,8 +116,19 @@ pub enum SensorKind {
         /// Added to the accelerometer's reading, m/s².
         #[serde(default)]
         accelerometer_bias_m_per_s2: [f64; 3],
+        /// Walk of the accelerometer's bias: standard deviation after one second, m/s² per √s.
+        #[serde(default)]
+        #[schemars(range(min = 0.0))]
+        accelerometer_walk_m_per_s2_sqrt_s: f64,
+        /// Largest specific force that it shows on an axis, m/s²; without it there is none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        accelerometer_limit_m_per_s2: Option<f64>,
     },
-    /// Pose of a link relative to another, as a camera or a motion-capture system gives it.
+    /// Pose of a link, as a camera or a motion-capture system gives it.
+    ///
+    /// Seen from the world it is the body's own: `body.<link>.position`, `.orientation`. Seen from a link it is `sensor.<name>.position` and `.orientation`,
+    /// in the axes of the camera, which looks along its z.
     Pose {
         /// Link that is observed, as `vehicle/link`.
         #[schemars(extend("x-refers" = "vehicle/part"))]
@@ -91,6 +137,9 @@ pub enum SensorKind {
         #[serde(default = "world")]
         #[schemars(extend("x-refers" = "vehicle/part"))]
         relative_to: String,
+        /// Pose of the camera in the link that it is fixed to; none of its own in the world.
+        #[serde(default)]
+        pose: PoseSpec,
         /// Noise of the position, standard deviation on each axis, m.
         #[serde(default)]
         #[schemars(range(min = 0.0))]
@@ -102,6 +151,14 @@ pub enum SensorKind {
         #[serde(default)]
         #[schemars(range(min = 0.0))]
         attitude_noise_deg: f64,
+        /// Farthest that the camera sees, m; without it as far as it likes.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        range_m: Option<f64>,
+        /// Full angle of the cone about the camera's z in which it sees, deg; without it all around.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("exclusiveMinimum" = 0.0))]
+        field_of_view_deg: Option<f64>,
     },
     /// Force and moment that pass through a joint (fixed ones too), on the child, in the child link's axes.
     ForceTorque {
@@ -167,6 +224,7 @@ impl SensorKind {
     pub fn text(&self) -> &'static str {
         match self {
             Self::JointEncoder { .. } => "joint-encoder",
+            Self::Tachometer { .. } => "tachometer",
             Self::Imu { .. } => "imu",
             Self::Pose { .. } => "pose",
             Self::ForceTorque { .. } => "force-torque",
@@ -177,7 +235,7 @@ impl SensorKind {
 
     /// Whether this version simulates it.
     pub fn is_simulated(&self) -> bool {
-        matches!(self, Self::ContactForce { .. } | Self::MechanismForce { .. })
+        !matches!(self, Self::ForceTorque { .. })
     }
 }
 

@@ -19,7 +19,7 @@ use crate::state::State;
 use crate::step::Scheme;
 use crate::workspace::{Workspace, world_wrench};
 use multibody::Kinematics;
-use spatial::{Inertia, Twist, Vec3, Wrench};
+use spatial::{Twist, Vec3, Wrench};
 
 /// Scratch of the body effects.
 #[derive(Clone, Debug, Default)]
@@ -97,12 +97,6 @@ pub(crate) fn calc_motion(model: &Model, kin: &Kinematics, place: &BodyPlace, ti
     BodyMotion { frame_wl: kin.link_frame(tree, place.link), twist: kin.link_twist(tree, place.link), time }
 }
 
-/// Acceleration of free fall at a point of W, m/s².
-fn calc_field(model: &Model, time: f64, point: &Vec3) -> Vec3 {
-    let unit = Inertia { mass: 1.0, ..Inertia::default() };
-    model.environment.calc_wrench(time, point, &unit).force + model.effects.tilt
-}
-
 /// Evaluates all body effects at the present stage: external wrenches join those of `ws.external`, the rest waits in
 /// `ws.parts`.
 pub(crate) fn eval(model: &Model, state: &State, ws: &mut Workspace) {
@@ -124,7 +118,7 @@ fn eval_parts(model: &Model, state: &State, ws: &mut Workspace, mut push: impl F
         let at = model.effects.memory(index);
         let memory = &state.effects[at.clone()];
         let particle = effect.law.particle(memory);
-        let field = particle.map_or(Vec3::zeros(), |(_, x, _)| calc_field(model, state.time, &x));
+        let field = particle.map_or(Vec3::zeros(), |(_, x, _)| model.calc_field(state.time, &x));
         let action = effect.law.eval(&effect.place, &motion, memory, &field, &mut parts.rates[at]);
         let to_anchor = kin.anchor - motion.frame_wl.pos;
         let body = model.vehicles[vehicle].body0 + model.vehicles[vehicle].tree.links[link].body;
