@@ -36,6 +36,9 @@ pub(crate) struct Arguments {
     /// What the recorded run is for
     #[arg(long, value_enum, default_value_t = Role::Fit, requires = "record")]
     role: Role,
+    /// How its file is written
+    #[arg(long, value_enum, default_value_t = Format::Csv, requires = "record")]
+    format: Format,
     /// Write no run.rrd
     #[arg(long)]
     no_rrd: bool,
@@ -59,6 +62,14 @@ enum Role {
     Fit,
     /// Only to judge it
     Holdout,
+}
+
+/// How the file of a recorded run is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    Csv,
+    Parquet,
+    Mcap,
 }
 
 /// Runs, writes, judges.
@@ -105,7 +116,12 @@ fn append(arguments: &Arguments, folder: &Path, rig: RigLog) -> anyhow::Result<(
     let mut words = arguments.set.clone();
     words.extend(arguments.seed.map(|seed| format!("seed={seed}")));
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    let added = rig.finish("", (role, &words.join(" "))).append_to(folder)?;
+    let format = match arguments.format {
+        Format::Csv => record::Format::Csv,
+        Format::Parquet => record::Format::Parquet,
+        Format::Mcap => record::Format::Mcap,
+    };
+    let added = rig.finish("", (role, &words.join(" "))).append_to(folder, format)?;
     if !arguments.quiet {
         println!("  Recorded as {} in {}", added.join(", "), folder.display());
     }

@@ -107,7 +107,9 @@ impl RigLog {
         let idle: Vec<&str> =
             self.commands.iter().filter(|c| c.is_feed_forward()).map(|c| c.channel.as_str()).collect();
         self.taken.retain(|name, (_, values)| !idle.contains(&name.as_str()) || values.iter().any(|v| *v != 0.0));
-        let series = |(name, (times, values)): (String, (Vec<f64>, Vec<f64>))| Series::new(name, times, values);
+        // Written as they are: what they were rounded to is found again by who reads them.
+        let series =
+            |(name, (times, values)): (String, (Vec<f64>, Vec<f64>))| Series::with_quantum(name, times, values, 0.0);
         let run = RecordedRun {
             file: file.to_owned(),
             role,

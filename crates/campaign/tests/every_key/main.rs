@@ -14,12 +14,7 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Keys of things that are not simulated in this version: a bench shows that the thing is refused by name.
-const REFUSED: [(&str, &str); 4] = [
-    ("sensor<joint-encoder>.", "sensor<joint-encoder>"),
-    ("sensor<imu>.", "sensor<imu>"),
-    ("sensor<pose>.", "sensor<pose>"),
-    ("sensor<force-torque>.", "sensor<force-torque>"),
-];
+const REFUSED: [(&str, &str); 1] = [("sensor<force-torque>.", "sensor<force-torque>")];
 
 /// Keys that only a diagnosis reads: its own tests show what each does (`catalogue::tolerances` of `softdock-diagnose`).
 const OF_A_DIAGNOSIS: &str = "tolerance.";

@@ -10,6 +10,7 @@ mod assemble;
 mod channel_name;
 mod group;
 mod manifest;
+mod mcap_file;
 mod orientation;
 mod quantum;
 mod save;
@@ -20,6 +21,7 @@ mod time;
 pub mod units;
 
 pub use channel_name::{ChannelName, Quantity};
+pub use save::Format;
 pub use series::Series;
 
 use crate::RecordError;

@@ -1,13 +1,44 @@
 //! Writing a set: what was read, or what was made, as a folder that reads back the same.
 
 use super::{RecordedRun, RecordingSet, Series};
-use crate::{RecordError, write_file};
+use crate::{Channel, ChannelSpec, Meta, Plot, RecordError, Signals, encode_parquet, write_file};
 use std::fmt::Write;
 use std::path::Path;
 use toml::Value;
 
 /// Decimals of values whose rounding is not a power of ten.
 const DECIMALS: usize = 12;
+
+/// How the file of a run is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Format {
+    /// Text, a column a channel.
+    #[default]
+    Csv,
+    /// The same columns in Parquet.
+    Parquet,
+    /// MCAP: a JSON message for every instant, with its time as `t` and each channel that was sampled then by its name.
+    Mcap,
+}
+
+impl Format {
+    /// The ending of its files.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Parquet => "parquet",
+            Self::Mcap => "mcap",
+        }
+    }
+
+    fn encode(self, run: &RecordedRun) -> Result<Vec<u8>, RecordError> {
+        match self {
+            Self::Csv => Ok(encode(run).into_bytes()),
+            Self::Parquet => encode_parquet(&Meta::default(), &signals_of(run)),
+            Self::Mcap => encode_mcap(run),
+        }
+    }
+}
 
 impl RecordingSet {
     /// Writes `recording.toml` and one CSV for each run into a folder; channels have the names and units of the format.
@@ -21,7 +52,7 @@ impl RecordingSet {
     /// Adds the runs of this set to the one in a folder, or begins it: files of runs are those that it has not yet, `run-01.csv`, `run-02.csv`, …
     ///
     /// Errors: what is there is no set, or one of another rig.
-    pub fn append_to(mut self, folder: &Path) -> Result<Vec<String>, RecordError> {
+    pub fn append_to(mut self, folder: &Path, format: Format) -> Result<Vec<String>, RecordError> {
         let manifest = folder.join(super::manifest::FILE);
         let known = if manifest.exists() { Some(Self::load(folder)?) } else { None };
         if let Some(known) = known.as_ref().filter(|known| known.rig != self.rig) {
@@ -30,8 +61,8 @@ impl RecordingSet {
         }
         let first = known.as_ref().map_or(0, |known| known.runs.len());
         for (i, run) in self.runs.iter_mut().enumerate() {
-            run.file = format!("run-{:02}.csv", first + i + 1);
-            write_file(&folder.join(&run.file), encode(run).as_bytes())?;
+            run.file = format!("run-{:02}.{}", first + i + 1, format.ending());
+            write_file(&folder.join(&run.file), &format.encode(run)?)?;
         }
         let added = self.runs.iter().map(|run| run.file.clone()).collect();
         if let Some(mut known) = known {
@@ -84,6 +115,50 @@ fn encode(run: &RecordedRun) -> String {
         text.push('\n');
     }
     text
+}
+
+/// A run as a table over the instants of all its channels.
+fn signals_of(run: &RecordedRun) -> Signals {
+    let mut times: Vec<f64> = run.series.iter().flat_map(|s| s.times.iter().copied()).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let channel = |series: &Series| {
+        let mut values = vec![f64::NAN; times.len()];
+        for (time, value) in series.times.iter().zip(&series.values) {
+            values[times.partition_point(|t| t < time)] = *value;
+        }
+        Channel { spec: ChannelSpec::new(series.channel.as_str(), "", Plot::Other), values }
+    };
+    let channels = run.series.iter().map(channel).collect();
+    Signals { times, channels }
+}
+
+fn encode_mcap(run: &RecordedRun) -> Result<Vec<u8>, RecordError> {
+    let signals = signals_of(run);
+    let write = || -> Result<Vec<u8>, mcap::McapError> {
+        let mut file = std::io::Cursor::new(Vec::new());
+        // Nothing of a clock or a host: equal runs give equal bytes.
+        let options = mcap::WriteOptions::new().library("softdock").compression(Some(mcap::Compression::Zstd));
+        let mut writer = options.create(&mut file)?;
+        let channel = writer.add_channel(0, "softdock", "json", &std::collections::BTreeMap::new())?;
+        for (row, time) in signals.times.iter().enumerate() {
+            let sampled = signals.channels.iter().filter(|c| !c.values[row].is_nan());
+            let sampled = sampled.map(|c| (c.spec.name.clone(), c.values[row].into()));
+            let message = std::iter::once(("t".to_owned(), (*time).into())).chain(sampled).collect();
+            let nanoseconds = (time * 1e9).round().max(0.0) as u64;
+            let header = mcap::records::MessageHeader {
+                channel_id: channel,
+                sequence: row as u32,
+                log_time: nanoseconds,
+                publish_time: nanoseconds,
+            };
+            writer.write_to_known_channel(&header, serde_json::Value::Object(message).to_string().as_bytes())?;
+        }
+        writer.finish()?;
+        drop(writer);
+        Ok(file.into_inner())
+    };
+    write().map_err(|error| RecordError::Encode { what: "a run in MCAP", reason: error.to_string() })
 }
 
 /// Decimals that show a series' rounding; none where its values are continuous.

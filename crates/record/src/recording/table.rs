@@ -1,4 +1,4 @@
-//! A run file as columns: CSV or Parquet, read leniently where the format leaves room, exactly where it does not.
+//! A run file as columns: CSV, Parquet or MCAP, read leniently where the format leaves room, exactly where it does not.
 //!
 //! A cell that is not a number is an error only where its column is used, so that foreign files may hold text. `nan`,
 //! `inf`, `null`, `NA` count as missing, and it is said. A last row without a line end is left out: a number that was
@@ -48,9 +48,11 @@ impl Table {
         let table = match extension.as_str() {
             "parquet" | "pq" => load_parquet(path, group)?,
             "csv" | "txt" | "tsv" => load_csv(path, group)?,
+            "mcap" => super::mcap_file::load(path)?,
             _ => {
-                let problem =
-                    format!("is neither .csv nor .parquet (its ending is \"{extension}\"); convert or rename it");
+                let problem = format!(
+                    "is neither .csv nor .parquet nor .mcap (its ending is \"{extension}\"); convert or rename it"
+                );
                 return Err(RecordError::table(path, problem));
             }
         };
