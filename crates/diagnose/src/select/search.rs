@@ -1,6 +1,7 @@
 //! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
 
 use super::detail::{but_for_a_detail, relaxed};
+use super::enough::Enough;
 use super::gamma_quantile_over_mean;
 use super::lines::lines;
 use super::pool::{Pool, price};
@@ -216,21 +217,6 @@ struct Smaller {
     power: f64,
 }
 
-/// A set that leaves next to nothing.
-struct Enough {
-    titles: Vec<String>,
-    /// Its price, and what may yet be gained beside it.
-    limit: f64,
-}
-
-impl Enough {
-    /// Whether a larger set is not worth a fit: what adds to one that leaves nothing adds nothing, and what costs more than that and all that it leaves
-    /// cannot be better by the criterion.
-    fn outdoes(&self, titles: &[String], price: f64) -> bool {
-        titles.len() > self.titles.len() && price > self.limit || self.titles.iter().all(|t| titles.contains(t))
-    }
-}
-
 /// Fits the sets that promise most in full simulation; the best of them, taken to the end, where it is worth its price.
 fn fit_sets(
     problem: &Problem<'_>,
@@ -253,8 +239,7 @@ fn fit_sets(
         }
         let added: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
         done.push(pool.titles(set.members.iter().map(|m| m.0)));
-        let entries: Vec<usize> = set.members.iter().map(|m| m.0).collect();
-        let costs = pool.price(&entries, now.count);
+        let costs = pool.price(&set.members.iter().map(|m| m.0).collect::<Vec<_>>(), now.count);
         if enough.iter().any(|known| known.outdoes(&added, costs)) {
             continue;
         }

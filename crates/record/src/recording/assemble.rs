@@ -124,8 +124,8 @@ fn sources<'a>(
             ignored.retain(|other| *other != mapping.column);
         }
     }
-    ignored
-        .retain(|name| *name != manifest.time_column && Some(*name) != manifest.group.as_deref() && !name.is_empty());
+    let is_time = |name: &str| name == manifest.time_column || table.clocks.contains(&name);
+    ignored.retain(|name| !is_time(name) && Some(*name) != manifest.group.as_deref() && !name.is_empty());
     say_ignored(set, manifest, &ignored, file);
     if sources.is_empty() {
         let columns = listed(table.columns.iter().map(|c| c.name.as_str()));

@@ -24,6 +24,9 @@ use std::path::Path;
 /// Nanoseconds from which on a clock counts from an epoch and not from the run's start.
 const EPOCH: i64 = 1_000_000_000_000_000;
 
+/// Columns of time.
+const CLOCKS: [&str; 2] = ["t", "log_time"];
+
 /// An instant: of JSON in seconds, as it stands there; of ROS and of the log in nanoseconds, of which seconds since an epoch would lose some.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stamp {
@@ -89,6 +92,9 @@ pub(super) fn load(path: &Path) -> Result<Table, RecordError> {
     Ok(Table { remarks, ..tabulate(path, rows.into_iter().map(since).collect()) })
 }
 
+/// The same by what stands in the table: stamp and log time, s.
+type Timed = (f64, f64, Vec<(String, f64)>);
+
 /// The earliest instant of a file whose clock counts from an epoch; zero of another.
 fn base_of(rows: &[Row]) -> i64 {
     let counts = rows.iter().flat_map(|row| [row.0, row.1]).filter_map(|stamp| match stamp {
@@ -110,7 +116,7 @@ fn column_of(topic: &str, what: &str) -> String {
 }
 
 /// Rows in the order of time; what was said at the same instants shares one.
-fn tabulate(path: &Path, mut rows: Vec<(f64, f64, Vec<(String, f64)>)>) -> Table {
+fn tabulate(path: &Path, mut rows: Vec<Timed>) -> Table {
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut names: Vec<&String> = rows.iter().flat_map(|row| row.2.iter().map(|(name, _)| name)).collect();
     names.sort();
@@ -132,10 +138,10 @@ fn tabulate(path: &Path, mut rows: Vec<(f64, f64, Vec<(String, f64)>)>) -> Table
     }
     let places = (1..=times[0].len()).collect();
     let column = |(name, values): (String, Vec<f64>)| Column { name, values, ..Column::default() };
-    let timed = ["t", "log_time"].map(str::to_owned).into_iter().zip(times);
+    let timed = CLOCKS.map(str::to_owned).into_iter().zip(times);
     let measured = names.into_iter().cloned().zip(values);
     let columns = timed.chain(measured).map(column).collect();
-    Table { path: path.to_owned(), columns, places, ..Table::default() }
+    Table { path: path.to_owned(), columns, places, clocks: &CLOCKS, ..Table::default() }
 }
 
 /// Every number of a JSON object.

@@ -37,6 +37,8 @@ pub(super) struct Table {
     pub(super) places: Vec<usize>,
     /// Text of the group column.
     pub(super) labels: Vec<String>,
+    /// Columns that are times: one of them is chosen, and nobody misses the others.
+    pub(super) clocks: &'static [&'static str],
     /// What was left out.
     pub(super) remarks: Vec<Remark>,
 }
