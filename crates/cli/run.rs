@@ -98,8 +98,10 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     if let Some(error) = recorder.error.take() {
         return Err(error.into());
     }
-    if let (Some(folder), Some(rig)) = (&arguments.record, rig) {
-        append(arguments, folder, rig)?;
+    match (&arguments.record, rig) {
+        (Some(folder), Some(rig)) if ended.is_ok() => append(arguments, folder, rig)?,
+        (Some(folder), _) => eprintln!("not recorded in {}: the run did not come to its end", folder.display()),
+        (None, _) => {}
     }
     let log = std::mem::take(&mut recorder.log);
     drop(recorder);

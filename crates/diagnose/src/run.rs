@@ -543,7 +543,7 @@ const ENOUGH: usize = 3000;
 /// Data that contradict themselves cannot judge a model.
 fn refuse_foreign(inspection: &record::inspect::Inspection) -> Result<(), DiagnoseError> {
     let faults: Vec<String> =
-        inspection.remarks.iter().filter(|r| r.severity == Severity::Fault).map(|r| r.what.clone()).collect();
+        inspection.remarks.iter().filter(|r| r.severity == Severity::Fault).map(record::Remark::sentence).collect();
     if faults.is_empty() { Ok(()) } else { Err(DiagnoseError::Foreign(faults.join("; "))) }
 }
 

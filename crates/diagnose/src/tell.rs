@@ -48,7 +48,7 @@ pub(crate) fn tell(
             .remarks
             .iter()
             .filter(|r| r.severity > record::Severity::Note)
-            .map(|r| r.what.clone())
+            .map(record::Remark::sentence)
             .chain(findings.said.iter().cloned())
             .chain(said_of_tolerances(findings, &scenario.tolerance))
             .chain(lost_runs(findings, stage))

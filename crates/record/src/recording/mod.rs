@@ -173,6 +173,13 @@ impl Remark {
         Self { run: None, channel: None, what: what.into(), severity }
     }
 
+    /// The sentence with its subject: run and channel, where it is about one.
+    pub fn sentence(&self) -> String {
+        let subject: Vec<&str> = [&self.run, &self.channel].into_iter().flatten().map(String::as_str).collect();
+        let colon = if subject.is_empty() { "" } else { ": " };
+        format!("{}{colon}{}", subject.join(", "), self.what)
+    }
+
     pub(crate) fn of_run(mut self, run: &str) -> Self {
         self.run = Some(run.to_owned());
         self
@@ -186,8 +193,6 @@ impl Remark {
 
 impl std::fmt::Display for Remark {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let subject: Vec<&str> = [&self.run, &self.channel].into_iter().flatten().map(String::as_str).collect();
-        let colon = if subject.is_empty() { "" } else { ": " };
-        write!(f, "{}: {}{colon}{}", self.severity.key(), subject.join(", "), self.what)
+        write!(f, "{}: {}", self.severity.key(), self.sentence())
     }
 }

@@ -21,6 +21,9 @@ pub enum Format {
     Mcap,
 }
 
+/// All of them.
+const ALL: [Format; 3] = [Format::Csv, Format::Parquet, Format::Mcap];
+
 impl Format {
     /// The ending of its files.
     pub fn ending(self) -> &'static str {
@@ -59,9 +62,12 @@ impl RecordingSet {
             let problem = format!("is of the rig \"{}\", not \"{}\"; record into another folder", known.rig, self.rig);
             return Err(RecordError::table(&manifest, problem));
         }
-        let first = known.as_ref().map_or(0, |known| known.runs.len());
-        for (i, run) in self.runs.iter_mut().enumerate() {
-            run.file = format!("run-{:02}.{}", first + i + 1, format.ending());
+        let mut number = 0;
+        for run in &mut self.runs {
+            // A number that no file has yet, whatever its format.
+            let is_taken = |n: usize| ALL.iter().any(|f| folder.join(format!("run-{n:02}.{}", f.ending())).exists());
+            number = (number + 1..).find(|n| !is_taken(*n)).unwrap_or(number + 1);
+            run.file = format!("run-{number:02}.{}", format.ending());
             write_file(&folder.join(&run.file), &format.encode(run)?)?;
         }
         let added = self.runs.iter().map(|run| run.file.clone()).collect();
