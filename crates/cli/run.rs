@@ -7,7 +7,7 @@ use anyhow::Context;
 use softdock::record::{self, Log, OutputFolder, Recorder, SampleSink, Scene};
 use softdock::scenario::outcome::{Judge, check_expectations};
 use softdock::scenario::recording::{recorder_plan, scene};
-use softdock::scenario::spec::Strategy;
+use softdock::scenario::spec::{IntegratorKind, Strategy};
 use softdock::scenario::{self, Mission, RigLog};
 use softdock::sim::{Observer, StepError};
 use std::path::{Path, PathBuf};
@@ -77,6 +77,7 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let mut mission = load(arguments)?;
     if !arguments.quiet {
         check::hints(&mission);
+        hint_at_loss(arguments, &mission);
     }
     let target = arguments.out.clone().unwrap_or_else(|| PathBuf::from("out").join(&mission.scenario.name));
     let folder = OutputFolder::create(&target)?;
@@ -107,6 +108,18 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     drop(recorder);
     let run = Finished { mission, folder, scene, clock };
     conclude(arguments, run, log, (judge, &ended), viewer)
+}
+
+/// A recording is as exact as its integrator.
+fn hint_at_loss(arguments: &Arguments, mission: &Mission) {
+    let kind = mission.scenario.integrator.kind;
+    if arguments.record.is_some() && matches!(kind, IntegratorKind::ImplicitEuler | IntegratorKind::SemiImplicitEuler) {
+        eprintln!(
+            "hint: a scheme of first order makes the recording; what it loses at {} s is no physics, and a diagnosis will find it: \
+             --set 'integrator.kind=\"rk4\"' or a shorter step",
+            mission.scenario.integrator.step_s
+        );
+    }
 }
 
 /// Adds a run to the recordings in a folder.
