@@ -92,11 +92,10 @@ impl RigLog {
 
     fn take_drives(&mut self, world: &World) {
         let now = world.state().time;
+        let channels = std::mem::take(&mut self.drives);
         let paths = world.model().drives.iter().flat_map(|d| d.paths.iter().map(|(_, path)| path.eval(now).position));
-        let moved: Vec<f64> = paths.collect();
-        for (channel, value) in self.drives.clone().iter().zip(moved) {
-            self.take(channel, now, value);
-        }
+        channels.iter().zip(paths).for_each(|(channel, value)| self.take(channel, now, value));
+        self.drives = channels;
     }
 
     /// The run as a set of one, under a file's name.

@@ -40,8 +40,9 @@ pub(crate) fn of_mission(mission: &Mission) -> Result<Vec<Sensor>, Vec<ScenarioE
             errors.push(scenario.complaint(&format!("sensor[{i}].rate_hz"), reason));
         }
         for part in parts_of(sensor, model).unwrap_or_default() {
-            let timing = Timing { rate: Some(sensor.rate_hz), delay: sensor.delay_s, dropout: sensor.dropout };
-            match sensors.iter().any(|known| known.name == part.name) {
+            let (delay, dropout, message) = (sensor.delay_s, sensor.dropout, hash(&sensor.name));
+            let timing = Timing { rate: Some(sensor.rate_hz), delay, dropout, message };
+            match sensors.iter().any(|known| known.part.name == part.name) {
                 true => {
                     let reason = format!("reads {} as another sensor does; a quantity has one", part.name);
                     errors.push(scenario.complaint(&format!("sensor[{i}]"), reason));
@@ -51,8 +52,8 @@ pub(crate) fn of_mission(mission: &Mission) -> Result<Vec<Sensor>, Vec<ScenarioE
         }
     }
     for name in faulted(scenario, model) {
-        if !sensors.iter().any(|known| known.name == name) {
-            let timing = Timing { rate: None, delay: 0.0, dropout: 0.0 };
+        if !sensors.iter().any(|known| known.part.name == name) {
+            let timing = Timing { rate: None, delay: 0.0, dropout: 0.0, message: 0 };
             sensors.extend(Sensor::new(scenario, model, Part { name, ..Part::default() }, timing));
         }
     }
@@ -105,6 +106,8 @@ struct Timing {
     delay: f64,
     /// Share of readings that never do.
     dropout: f64,
+    /// What a sensor reads at an instant comes as one message, or not at all: its stream of random numbers.
+    message: u64,
 }
 
 /// A reading: when it arrives, s, and what it says; of an orientation w, x, y, z.
@@ -113,13 +116,13 @@ pub(crate) type Arrival = (f64, [f64; 4]);
 /// One quantity, as its sensor reads it.
 #[derive(Debug)]
 pub(crate) struct Sensor {
-    name: String,
     part: Part,
     gauge: Gauge,
     faults: SensorModel,
     timing: Timing,
     channels: Vec<ChannelSpec>,
     random: ChaCha8Rng,
+    losses: ChaCha8Rng,
     /// Number of the reading that is due next.
     next: f64,
     /// What the bias has walked by, and when it was seen last, s.
@@ -134,14 +137,16 @@ impl Sensor {
         let faults = SensorModel::of(&scenario.effects, model, &part.name);
         let mut random = ChaCha8Rng::seed_from_u64(scenario.seed);
         random.set_stream(hash(&part.name));
+        let mut losses = ChaCha8Rng::seed_from_u64(scenario.seed);
+        losses.set_stream(timing.message);
         Some(Self {
-            name: part.name.clone(),
             gauge,
             faults,
             timing: Timing { delay: timing.delay + faults.delay, ..timing },
             channels: channels(model, &part.name, gauge.quantity()),
             part,
             random,
+            losses,
             next: 0.0,
             walked: (Vec3::zeros(), 0.0),
             sent: VecDeque::new(),
@@ -202,7 +207,7 @@ impl Sensor {
             let since = world.state().time - self.walked.1;
             self.walked = (self.walked.0 + self.part.walk * since.sqrt() * self.normal(), world.state().time);
         }
-        let is_lost = self.timing.dropout > 0.0 && uniform(&mut self.random) < self.timing.dropout;
+        let is_lost = self.timing.dropout > 0.0 && uniform(&mut self.losses) < self.timing.dropout;
         if is_lost || !self.sees(world) {
             return None;
         }

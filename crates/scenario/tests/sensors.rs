@@ -213,6 +213,7 @@ attitude_noise_deg = 0.2
     // Straight and uniform along z: what arrives is as old as the delay.
     assert!(times.iter().zip(&x).all(|(t, z)| (z - 0.3 * (t - 0.1)).abs() < 1e-10));
     near(1.0 - x.len() as f64 / (50.0 * (200.0 - 0.1)), 0.3, 0.03);
+    assert_eq!(times, series(&set, "body.body.orientation.w").0, "a message comes whole or not at all");
     // Attitude noise about each axis: of a body that turns about z, x and y of the quaternion are half of it, turned.
     let orientation = ["x", "y"].map(|k| series(&set, &format!("body.body.orientation.{k}")).1);
     let square = orientation.iter().map(|v| mean(&v.iter().map(|x| x * x).collect::<Vec<_>>())).sum::<f64>() / 2.0;

@@ -446,7 +446,7 @@ impl World {
 
     /// Rate of change of a link's twist about its own origin, W axes, m/s² and rad/s², from this instant on with the commands that act.
     ///
-    /// By differences of motion over [`GLANCE`] and twice that under Runge–Kutta, second order: with all that acts, whatever it is. The world itself stays
+    /// By differences of motion over 20 µs and twice that under Runge–Kutta, second order: with all that acts, whatever it is. The world itself stays
     /// where it is. None where it would diverge.
     pub fn calc_link_acceleration(&self, vehicle: usize, link: usize) -> Option<Twist> {
         let ahead = Self::new(Arc::clone(&self.model), self.state.clone());
