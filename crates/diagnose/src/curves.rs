@@ -9,7 +9,6 @@ use crate::reading::Value;
 use crate::run::Findings;
 use crate::tape::Tape;
 use crate::tell::role;
-use multibody::JointKind;
 use record::{ChannelName, Role};
 use scenario::measure::Quantity;
 use sim::Model;
@@ -71,14 +70,7 @@ pub(crate) fn unit_of_channel(model: &Model, quantity: Quantity, channel: &str) 
     else {
         return unit;
     };
-    if slides(model, v) { sliding } else { turning }
-}
-
-/// Whether a coordinate is that of a sliding joint.
-pub(crate) fn slides(model: &Model, coordinate: usize) -> bool {
-    let mut joints =
-        model.vehicles.iter().flat_map(|vehicle| vehicle.tree.joints.iter().map(|j| (vehicle.v0 + j.v_index, j)));
-    joints.any(|(at, joint)| at == coordinate && !joint.is_mimic && joint.kind == JointKind::Prismatic)
+    if model.slides(v) { sliding } else { turning }
 }
 
 /// What was measured; orientations have no curve.

@@ -4,7 +4,6 @@
 //! The velocity limit of a URDF is often a planner's. Where a recorded joint is faster while its command pushes it on, the rig has no
 //! such limit: it is raised, and that is said; a model that stops pushing there would be off by more than any effect.
 
-use crate::curves::slides;
 use crate::number::short;
 use crate::plant::{Built, Plant};
 use crate::reading::{Reading, Value};
@@ -35,7 +34,7 @@ pub(crate) fn raised(plant: &Plant, built: &Built, tapes: &[Tape]) -> Option<(Sc
         let limit = built.model.coordinates[coordinate].speed_limit;
         let Some(speed) = speed_beyond(tapes, (a, coordinate), limit) else { continue };
         let Some(i) = scenario.actuators.iter().position(|s| s.name == actuator.name) else { continue };
-        let now = scenario.set_speed_limit(i, (RAISED * speed, slides(&built.model, coordinate)));
+        let now = scenario.set_speed_limit(i, (RAISED * speed, built.model.slides(coordinate)));
         passed.extend(now.map(|now| format!("{} ({} beyond {}; {now})", actuator.name, short(speed), short(limit))));
     }
     let words = || {

@@ -289,12 +289,8 @@ fn quantity_along(axis: DriveAxis) -> (&'static str, &'static str) {
 
 /// Unit of what an actuator is commanded: by its kind, and by whether its joint turns or slides.
 fn unit_of_command(model: &Model, kind: &ActuatorKind) -> &'static str {
-    let slides = |coordinate: usize| {
-        let vehicle = model.vehicles.iter().find(|v| v.v_range().contains(&coordinate));
-        let joint = vehicle.and_then(|v| v.tree.joints.iter().find(|j| !j.is_mimic && v.v0 + j.v_index == coordinate));
-        joint.is_some_and(|j| j.kind == JointKind::Prismatic)
-    };
-    let of = |coordinate, [turning, sliding]: [&'static str; 2]| if slides(coordinate) { sliding } else { turning };
+    let of =
+        |coordinate, [turning, sliding]: [&'static str; 2]| if model.slides(coordinate) { sliding } else { turning };
     match *kind {
         ActuatorKind::JointEffort { coordinate, .. } => of(coordinate, ["N·m", "N"]),
         ActuatorKind::JointDrive { coordinate, stiffness, .. } if stiffness > 0.0 => of(coordinate, ["rad", "m"]),

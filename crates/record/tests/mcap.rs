@@ -42,6 +42,21 @@ fn a_run_is_the_same_to_the_bit_in_csv_parquet_and_mcap() {
     assert!(refused.contains("run-03.mcap") && refused.contains("no whole MCAP file"), "{refused}");
 }
 
+#[test]
+fn a_set_that_maps_columns_is_not_written_again_and_stays_what_it_is() {
+    let home = tempfile::tempdir().unwrap();
+    for file in std::fs::read_dir(folder("tumble-ros2")).unwrap() {
+        let file = file.unwrap();
+        std::fs::copy(file.path(), home.path().join(file.file_name())).unwrap();
+    }
+    let manifest = || std::fs::read_to_string(home.path().join("recording.toml")).unwrap();
+    let (before, set) = (manifest(), RecordingSet::load(home.path()).unwrap());
+    let refused = set.append_to(home.path(), Format::Csv).unwrap_err().to_string();
+    assert!(refused.contains("recording.toml") && refused.contains("`channels`"), "{refused}");
+    assert_eq!(manifest(), before);
+    assert_eq!(std::fs::read_dir(home.path()).unwrap().count(), 3, "no file is left behind");
+}
+
 /// `tests/mcap/bag.py` made it of `tests/recordings/tumble` with the packages `mcap` and `mcap-ros2-support` of PyPI.
 #[test]
 fn a_ros_2_bag_that_others_wrote_is_the_recording_that_it_was_made_of() {

@@ -249,17 +249,12 @@ fn channels(model: &Model, name: &str, quantity: Quantity) -> Vec<ChannelSpec> {
     if !standard.is_empty() {
         return standard.into_iter().map(|spec| spec.described("as its sensor reads it")).collect();
     }
-    let unit = match quantity {
-        Quantity::SensorRate(_) => "rad/s",
-        Quantity::SpecificForce(_) => "m/s²",
-        Quantity::SeenPosition(_) | Quantity::Position(..) => "m",
-        Quantity::Torque(_) => "N·m",
-        Quantity::Force(_) => "N",
-        _ => "1",
-    };
     let components: &[&str] = if quantity.is_orientation() { &["w", "x", "y", "z"] } else { &["x", "y", "z"] };
-    let channel =
-        |k: &&str| ChannelSpec::new(format!("{name}.{k}"), unit, Plot::Sensors).described("as the sensor reads it");
+    let channel = |k: &&str| {
+        let name = format!("{name}.{k}");
+        let unit = ChannelName::parse(&name).map_or("", |known| known.quantity.unit());
+        ChannelSpec::new(name, unit, Plot::Sensors).described("as the sensor reads it")
+    };
     components.iter().map(channel).collect()
 }
 

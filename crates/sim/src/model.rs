@@ -296,6 +296,12 @@ impl Model {
         Ok(model)
     }
 
+    /// Whether a coordinate is that of a sliding joint: of m and N, not of rad and N·m.
+    pub fn slides(&self, coordinate: usize) -> bool {
+        let mut joints = self.vehicles.iter().flat_map(|v| v.tree.joints.iter().map(|j| (v.v0 + j.v_index, j)));
+        joints.any(|(at, joint)| at == coordinate && !joint.is_mimic && joint.kind == JointKind::Prismatic)
+    }
+
     /// Acceleration of what falls freely at a point of W, m/s², W axes: gravity, tide, tilt.
     pub fn calc_field(&self, time: f64, point: &Vec3) -> Vec3 {
         let unit = Inertia { mass: 1.0, ..Inertia::default() };

@@ -54,13 +54,17 @@ impl RecordingSet {
 
     /// Adds the runs of this set to the one in a folder, or begins it: files of runs are those that it has not yet, `run-01.csv`, `run-02.csv`, …
     ///
-    /// Errors: what is there is no set, or one of another rig.
+    /// Errors: what is there is no set, one of another rig, or one whose `recording.toml` says more than is written here (columns that are mapped, runs that
+    /// are cut): that would be lost.
     pub fn append_to(mut self, folder: &Path, format: Format) -> Result<Vec<String>, RecordError> {
         let manifest = folder.join(super::manifest::FILE);
         let known = if manifest.exists() { Some(Self::load(folder)?) } else { None };
         if let Some(known) = known.as_ref().filter(|known| known.rig != self.rig) {
             let problem = format!("is of the rig \"{}\", not \"{}\"; record into another folder", known.rig, self.rig);
             return Err(RecordError::table(&manifest, problem));
+        }
+        if known.is_some() {
+            refuse_foreign(&manifest)?;
         }
         let mut number = 0;
         for run in &mut self.runs {
@@ -98,9 +102,7 @@ impl RecordingSet {
 
 /// A table of all series: a row for each instant, empty cells where a channel was not sampled.
 fn encode(run: &RecordedRun) -> String {
-    let mut times: Vec<f64> = run.series.iter().flat_map(|s| s.times.iter().copied()).collect();
-    times.sort_by(f64::total_cmp);
-    times.dedup();
+    let times = instants_of(run);
     let mut text = String::from("t");
     run.series.iter().for_each(|s| text.extend([",", s.channel.as_str()]));
     text.push('\n');
@@ -123,11 +125,35 @@ fn encode(run: &RecordedRun) -> String {
     text
 }
 
-/// A run as a table over the instants of all its channels.
-fn signals_of(run: &RecordedRun) -> Signals {
+/// A manifest that says what this module does not write is nobody's to write again.
+fn refuse_foreign(manifest: &Path) -> Result<(), RecordError> {
+    let text = std::fs::read_to_string(manifest).map_err(RecordError::read(manifest))?;
+    let table: toml::Table =
+        text.parse().map_err(|error| RecordError::table(manifest, format!("is no TOML: {error}")))?;
+    let runs = table.get("run").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_table);
+    let of_set =
+        table.keys().filter(|key| !["format", "rig", "title", "window_s", "noise", "run"].contains(&key.as_str()));
+    let of_runs = runs.flat_map(toml::Table::keys).filter(|key| !["file", "role", "note"].contains(&key.as_str()));
+    match of_set.chain(of_runs).next() {
+        None => Ok(()),
+        Some(key) => {
+            let problem = format!("has `{key}`, which a run that is added would not keep; record into another folder");
+            Err(RecordError::table(manifest, problem))
+        }
+    }
+}
+
+/// The instants of all channels of a run, ascending.
+fn instants_of(run: &RecordedRun) -> Vec<f64> {
     let mut times: Vec<f64> = run.series.iter().flat_map(|s| s.times.iter().copied()).collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
+    times
+}
+
+/// A run as a table over the instants of all its channels.
+fn signals_of(run: &RecordedRun) -> Signals {
+    let times = instants_of(run);
     let channel = |series: &Series| {
         let mut values = vec![f64::NAN; times.len()];
         for (time, value) in series.times.iter().zip(&series.values) {

@@ -3,7 +3,6 @@
 use crate::glob::glob_matches;
 use crate::measure::{joints, links};
 use crate::spec::{PoseSpec, Sensor as SensorSpec, SensorKind};
-use multibody::JointKind;
 use sim::Model;
 use spatial::Vec3;
 
@@ -127,7 +126,7 @@ fn of_joints(
 ) -> Result<Vec<Part>, String> {
     let full = |vehicle: &str, joint: &str| format!("{vehicle}/{joint}");
     let part = |(vehicle, joint, at): (&str, &str, usize)| {
-        let (sigma, step, bias) = errors(slides(model, at));
+        let (sigma, step, bias) = errors(model.slides(at));
         let name = format!("joint.{}.{quantity}", full(vehicle, joint));
         Part { name, sigma, step, bias: Vec3::new(bias, 0.0, 0.0), ..Part::default() }
     };
@@ -136,12 +135,6 @@ fn of_joints(
         true => Err(format!("\"{pattern}\" is no joint that turns or slides by itself")),
         false => Ok(found),
     }
-}
-
-fn slides(model: &Model, coordinate: usize) -> bool {
-    let vehicle = model.vehicles.iter().find(|v| v.v_range().contains(&coordinate));
-    let joint = vehicle.and_then(|v| v.tree.joints.iter().find(|j| !j.is_mimic && v.v0 + j.v_index == coordinate));
-    joint.is_some_and(|j| j.kind == JointKind::Prismatic)
 }
 
 /// A link as recordings call it: the base by its vehicle.
