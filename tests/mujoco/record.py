@@ -278,4 +278,5 @@ def main():
     (out / "keys.json").write_text(json.dumps(keys, indent=1) + "\n")
 
 
-main()
+if __name__ == "__main__":
+    main()

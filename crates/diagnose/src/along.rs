@@ -13,7 +13,7 @@ use crate::linear::{Segment, Stage, Steps};
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::Span;
-use crate::select::search::{Found, NEXT_TO_NOTHING, Remainder, Tried, hypotheses_of, remainder, search};
+use crate::select::search::{Found, NEXT_TO_NOTHING, Remainder, Tried, hypotheses_of, remainder, search, to_the_end};
 use crate::tell::near_the_best;
 use record::Role;
 use scenario::spec::Tolerance;
@@ -48,13 +48,17 @@ pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Cour
     stage.work.watch.step(&format!("the nominal model leaves {:.1}, noise at most {:.1}", left.rise, left.bound));
     let within = catalogue::within(&Facts::new(&nominal.built, stage.tapes), &plant.scenario.tolerance);
     if !within.members.is_empty() && left.rise > left.bound {
-        nominal = problem.fit(&nominal, within, WITHIN)?;
+        nominal = to_the_end(&problem, problem.fit(&nominal, within, WITHIN)?);
+        let left = remainder(&problem, &nominal)?;
+        let said = format!("numbers within their tolerances leave {:.1}, noise at most {:.1}", left.rise, left.bound);
+        stage.work.watch.step(&said);
     }
     let hypotheses = |now: &Fitted| hypotheses_of(&problem, now, own);
     let usual = || catalogue::within(&Facts::new(&nominal.built, stage.tapes), &USUAL);
     let numbers = plant.scenario.tolerance.is_exact().then(usual);
     let found = search(&problem, nominal, &hypotheses, numbers)?;
     let after = remainder(&problem, &found.best)?;
+    stage.work.watch.step(&format!("what was found leaves {:.1}, noise at most {:.1}", after.rise, after.bound));
     Ok(Course { found, left: [left, after] })
 }
 
@@ -90,7 +94,7 @@ pub(crate) fn told_by_all_runs(
     let nominal = problem.along(&course.found.nominal, &course.found.nominal.set)?;
     let set = course.found.best.set.clone();
     let along = problem.along(&course.found.best, &set)?;
-    let best = if set.has_findings() { problem.fit(&along, set, ALL_RUNS)? } else { along };
+    let best = if set.members.is_empty() { along } else { problem.fit(&along, set, ALL_RUNS)? };
     let left = [remainder(&problem, &nominal)?, remainder(&problem, &best)?];
     Ok(Course { found: Found { nominal, best, ..course.found }, left })
 }
@@ -115,7 +119,7 @@ pub(crate) fn at_suiting_steps(
     let best = &course.found.best;
     let windows = windows_of(&problem(stage, plant, own, Role::Fit), best, window);
     let judged = as_fit(stage, best, windows);
-    if !best.set.has_findings() || judged.rms() > pace::NEAR {
+    if best.set.members.is_empty() || judged.rms() > pace::NEAR {
         return Ok((course, chosen));
     }
     let found = pace::suited(stage, (&judged.built, &judged.segments), judged.count);
@@ -139,7 +143,7 @@ pub(crate) fn fit_to_all(
 ) -> Result<Course, DiagnoseError> {
     let scalars = |stage: &Stage<'_>| stage.tapes.iter().map(|t| t.offsets[t.offsets.len() - 1]).sum::<usize>();
     let best = &course.found.best;
-    if !best.set.has_findings() || scalars(all) <= scalars(thin) || scalars(all) > MOST {
+    if best.set.members.is_empty() || scalars(all) <= scalars(thin) || scalars(all) > MOST {
         return Ok(course);
     }
     // Where forces are left they are what limits the numbers, not how many samples there are.
@@ -163,7 +167,7 @@ pub(crate) fn windows(
     fitted: &Fitted,
 ) -> Result<Fit, DiagnoseError> {
     let left_out = problem(stage, plant, own, Role::Holdout);
-    let joined = |fit: Fitted| if fitted.set.has_findings() { left_out.joined(fit) } else { fit };
+    let joined = |fit: Fitted| if fitted.set.members.is_empty() { fit } else { left_out.joined(fit) };
     let mut fits = vec![joined(fitted.clone())];
     if !left_out.runs.is_empty() {
         fits.push(joined(left_out.along(fitted, &fitted.set)?));

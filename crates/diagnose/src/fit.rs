@@ -30,6 +30,15 @@ impl EffectSet {
         self.findings().any(|(h, _)| h.title() == wanted.title())
     }
 
+    /// A hypothesis that may act beside it: none of its findings, and of the numbers that have a tolerance one that stands at its end.
+    pub fn still_open(&self, h: Hypothesis) -> Option<Hypothesis> {
+        match self.members.iter().find(|(m, _)| m.title() == h.title()) {
+            None => Some(h),
+            Some((m, x)) if m.is_tolerated() && m.is_at_bound(x) => Some(h.screened_beside(x)),
+            Some(_) => None,
+        }
+    }
+
     /// The `[[effect]]` entries.
     pub fn effects(&self) -> Vec<Effect> {
         self.members.iter().map(|(h, x)| h.effect(x)).collect()
@@ -72,6 +81,15 @@ impl EffectSet {
         let h = &self.members[m].0;
         let sigma = h.tolerance.get(k).filter(|s| **s > 0.0)?;
         Some((h.coordinates[k].neutral, 1.0 / (sigma * sigma)))
+    }
+
+    /// Where the fitted numbers that have a tolerance stand, in standard deviations from their nominal values.
+    pub fn within_tolerances(&self) -> Vec<f64> {
+        let off = |slot: (usize, usize)| {
+            let (mean, weight) = self.prior(slot)?;
+            Some((self.members[slot.0].1[slot.1] - mean) * weight.sqrt())
+        };
+        self.slots().into_iter().filter_map(off).collect()
     }
 
     /// What the prior adds to the cost: Σ ((x − x₀)/σ)².

@@ -324,13 +324,14 @@ fn verdict_along(
     helps: bool,
 ) -> Verdict {
     let [before, after] = course.left;
-    if !found.set.has_findings() {
-        let is_noise = before.rise <= before.bound || after.rise <= after.bound;
-        return if is_noise { Verdict::NoMismatch } else { Verdict::Unknown };
-    }
     let [nominal, corrected] = judgement.rms(!follows, |run| found.has_run(run));
     let left = (corrected * corrected - 1.0) / (nominal * nominal - 1.0).max(1e-9);
-    if after.rise <= after.bound || left < NEXT_TO_NOTHING && corrected < RIGHT {
+    let is_next_to_noise = after.rise <= after.bound || left < NEXT_TO_NOTHING && corrected < RIGHT;
+    if !found.set.has_findings() {
+        let is_noise = before.rise <= before.bound || is_next_to_noise;
+        return if is_noise { Verdict::NoMismatch } else { Verdict::Unknown };
+    }
+    if is_next_to_noise {
         Verdict::Explained
     } else if helps {
         Verdict::PartlyExplained

@@ -87,7 +87,7 @@ pub fn search(
     while is_open(&now) && !stage.work.is_spent(Until::Search) {
         let all = hypotheses(stage, &now.windows)?;
         known.extend(all.iter().cloned());
-        let open = all.into_iter().filter_map(|h| still_open(h, &now.judge().set));
+        let open = all.into_iter().filter_map(|h| now.judge().set.still_open(h));
         let (dear, cheap): (Vec<Hypothesis>, Vec<Hypothesis>) = open.partition(|h| h.is_dear);
         let (best, mut tried) = refit_best(stage, plant, &now, (cheap, &dear), (limits, round))?;
         attempts.append(&mut tried);
@@ -172,15 +172,6 @@ fn to_the_end(stage: &mut Stage<'_>, plant: &Plant, now: Standing) -> Result<Sta
     let tried = now.refit_here(stage, plant, set, END)?;
     stage.work.watch.step(&format!("to the end: {}", errors(&tried)));
     Ok(if tried.is_better(&now) { tried } else { now })
-}
-
-/// A hypothesis that may act beside a set: none of its members, and of the numbers that have a tolerance one that stands at its end.
-fn still_open(h: Hypothesis, set: &EffectSet) -> Option<Hypothesis> {
-    match set.members.iter().find(|(m, _)| m.title() == h.title()) {
-        None => Some(h),
-        Some((m, x)) if m.is_tolerated() && m.is_at_bound(x) => Some(h.screened_beside(x)),
-        Some(_) => None,
-    }
 }
 
 /// Name and place of every member.

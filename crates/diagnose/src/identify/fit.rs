@@ -48,8 +48,8 @@ pub struct Fitted {
     pub tracks: Vec<Track>,
     /// Derivatives by states and forces, as last taken.
     pub links: Vec<Arc<Vec<Link>>>,
-    /// Columns of the numbers that only move within their tolerances, run by run: they change little, and are taken once.
-    pub steady: Vec<Arc<Columns>>,
+    /// Columns of the numbers that only move within their tolerances: they change little, and are taken anew where these have moved.
+    pub steady: Steady,
     /// Prior standard deviations of a first state.
     pub first: DVector<f64>,
     /// Spread of forces and noise.
@@ -70,6 +70,13 @@ pub struct Fitted {
 
 /// Columns of a run, number by number and interval by interval.
 pub type Columns = Vec<Vec<Column>>;
+
+/// Columns of the numbers that only move within their tolerances, and where these stood, units of their tolerances.
+#[derive(Clone, Debug, Default)]
+pub struct Steady {
+    runs: Vec<Arc<Columns>>,
+    at: Vec<f64>,
+}
 
 /// How far a fit goes.
 #[derive(Clone, Copy, Debug)]
@@ -104,6 +111,9 @@ const FEWEST: f64 = 6.0;
 const UNSTEADY: f64 = 4.0;
 /// Largest factor of a mean square that a wrong figure of the noise may stand for.
 const WRONG: f64 = 4.0;
+/// Standard deviations of its tolerance by which a number moves until its column is taken anew: a mass and an arm whose product shows are told apart by
+/// what their columns differ in, of second order.
+const MOVED: f64 = 0.02;
 /// A first state is known no better than so many times what its first interval shows of it.
 const UNKNOWN: f64 = 1e4;
 /// Largest prior standard deviation of a first state's coordinate, its own unit.
@@ -196,7 +206,7 @@ impl<'a> Problem<'a> {
             freedoms,
             tracks,
             links: Vec::new(),
-            steady: Vec::new(),
+            steady: Steady::default(),
             first,
             spread,
             score: f64::INFINITY,
@@ -267,7 +277,7 @@ impl<'a> Problem<'a> {
     /// The same fit on other samples of the same runs.
     pub fn onto(&self, of: &Fitted) -> Result<Fitted, DiagnoseError> {
         let tracks = of.tracks.iter().map(|t| t.onto(&self.stage, &of.built)).collect::<Result<_, _>>()?;
-        Ok(Fitted { tracks, links: Vec::new(), steady: Vec::new(), ..of.clone() })
+        Ok(Fitted { tracks, links: Vec::new(), steady: Steady::default(), ..of.clone() })
     }
 
     /// A set along other runs than those that it was fitted to, its numbers as they are.
@@ -341,7 +351,7 @@ impl<'a> Problem<'a> {
             now = self.followed(from, now)?;
         }
         if !reach.reuse {
-            now.steady.clear();
+            now.steady = Steady::default();
         }
         let slots = now.set.slots();
         if slots.is_empty() {
@@ -461,7 +471,7 @@ impl<'a> Problem<'a> {
         let first = DVector::from_iterator(freedoms.len(), freedoms.iter().map(first));
         let mut now = Fitted { set, built, freedoms, first, ..from.clone() };
         if !is_same {
-            (now.links, now.steady) = (Vec::new(), Vec::new());
+            (now.links, now.steady) = (Vec::new(), Steady::default());
         }
         now.tracks = {
             let frame = self.frame(&now);
@@ -474,7 +484,7 @@ impl<'a> Problem<'a> {
             a.intervals.iter().zip(&b.intervals).all(|(a, b)| a.members.len() == b.members.len())
         };
         if !told.iter().zip(&now.tracks).all(is_told_alike) {
-            (now.tracks, now.links, now.steady) = (told, Vec::new(), Vec::new());
+            (now.tracks, now.links, now.steady) = (told, Vec::new(), Steady::default());
         }
         Ok(now)
     }
@@ -496,7 +506,7 @@ impl<'a> Problem<'a> {
         let count = channels.iter().flatten().map(Vec::len).sum();
         let price = price_of_factor(count, channels.iter().map(Vec::len).sum::<usize>() * self.channels.len());
         let linear = |(k, channels): (usize, Vec<Vec<u16>>)| {
-            let known = steady.get(k).into_iter().flat_map(|s| s.iter());
+            let known = steady.runs.get(k).into_iter().flat_map(|s| s.iter());
             let mut known = known.map(|column| Source::Known(column));
             let sources: Vec<Source<'_>> = variations
                 .iter()
@@ -510,17 +520,23 @@ impl<'a> Problem<'a> {
         Ok(Made { runs, count })
     }
 
-    /// Columns of the numbers that are taken once, run by run.
-    fn steady(&self, now: &Fitted, bases: &[Bases], variations: &[Variation]) -> Vec<Arc<Columns>> {
+    /// Columns of the numbers that have a tolerance: known ones, as long as the numbers stand next to where they were taken.
+    fn steady(&self, now: &Fitted, bases: &[Bases], variations: &[Variation]) -> Steady {
         let taken: Vec<&Variation> = variations.iter().filter(|v| v.is_tolerated).collect();
-        let is_known = |own: &Arc<Columns>| own.len() == taken.len();
-        if taken.is_empty() || now.steady.len() == now.tracks.len() && now.steady.iter().all(is_known) {
-            return now.steady.clone();
+        let at = now.set.within_tolerances();
+        let is_whole = |(own, track): (&Arc<Columns>, &Track)| {
+            own.len() == taken.len() && own.iter().all(|c| c.len() == track.intervals.len())
+        };
+        let known = &now.steady;
+        let is_known = known.runs.len() == now.tracks.len() && known.runs.iter().zip(&now.tracks).all(is_whole);
+        let is_near = at.len() == known.at.len() && at.iter().zip(&known.at).all(|(a, b)| (a - b).abs() < MOVED);
+        if taken.is_empty() || is_known && is_near {
+            return known.clone();
         }
         let frame = self.frame(now);
         let columns =
             |(t, b): (&Track, &Bases)| Arc::new(taken.par_iter().map(|v| frame.columns(t, b, v)).collect::<Columns>());
-        now.tracks.par_iter().zip(bases).map(columns).collect()
+        Steady { runs: now.tracks.par_iter().zip(bases).map(columns).collect(), at }
     }
 
     /// The runs of a fit with their states where the smoother has them.

@@ -381,7 +381,7 @@ fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>, bare: &[Chain
         let rise = own.map(|(_, rise)| *rise).reduce(f64::max);
         place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
     };
-    all.into_iter().filter(|h| !now.set.has_finding(h) && !is_dull(&h.place)).collect()
+    all.into_iter().filter(|h| !is_dull(&h.place)).filter_map(|h| now.set.still_open(h)).collect()
 }
 
 /// What the first looks at all hypotheses beside a fit say.
@@ -484,7 +484,7 @@ fn siblings(looked: &Looked, now: &Fitted, single: &LinearSet) -> Vec<Proposal> 
 }
 
 /// A fit that is followed anew as long as that betters it: forces that pushed the runs beside other numbers hold these where they were.
-pub(super) fn to_the_end(problem: &Problem<'_>, mut now: Fitted) -> Fitted {
+pub(crate) fn to_the_end(problem: &Problem<'_>, mut now: Fitted) -> Fitted {
     for _ in 0..ENDS {
         let further =
             |from: &Fitted| problem.fit(from, now.set.clone(), END).ok().filter(|next| now.score - next.score > 0.0);
