@@ -226,6 +226,7 @@ mod tests {
             sigma: 5e-6,
             times,
             values,
+            late_s: 0.0,
         };
         Tape {
             index: 0,

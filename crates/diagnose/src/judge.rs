@@ -55,6 +55,10 @@ pub fn judge(
     (nominal, found): ([&Fit; 2], &Fit),
     (window, follows): (f64, bool),
 ) -> Result<Judgement, DiagnoseError> {
+    let late = |stage: &Stage<'_>| -> Vec<Tape> { stage.tapes.iter().map(|t| t.as_late_as(&found.built)).collect() };
+    let [few_tapes, all_tapes] = [late(few), late(all)];
+    let few = &Stage { tapes: &few_tapes, ..*few };
+    let all = &Stage { tapes: &all_tapes, ..*all };
     let predict = |fit: Fit| Prediction {
         residuals: fit.segments.par_iter().map(|s| all.residuals(&fit.built, s)).collect(),
         fit,

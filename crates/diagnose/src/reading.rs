@@ -45,6 +45,8 @@ pub struct Reading {
     pub times: Vec<f64>,
     /// Measured values; components that were not sampled are zero.
     pub values: Vec<Value>,
+    /// How late its sensor was found to be, s: what is read so soon after the begin of a window tells of what was before it, and is not judged.
+    pub late_s: f64,
 }
 
 impl Reading {

@@ -171,8 +171,13 @@ pub fn residuals_of(readings: &[Measured], built: &Built, tape: &Tape, span: Spa
     let offset = |i: usize| tape.offsets[range.start + i] - tape.offsets[range.start];
     let mut out = vec![f64::NAN; offset(range.len())];
     for (i, (truth, event)) in readings.iter().zip(&tape.events[range.clone()]).enumerate() {
+        let reading = &tape.readings[event.reading as usize];
+        if event.time - span.from < reading.late_s {
+            out[offset(i)..][..reading.width()].fill(0.0);
+            continue;
+        }
         let value = Value::from(sensors[event.reading as usize].1.apply(truth));
-        tape.readings[event.reading as usize].write_residual(event.sample as usize, &value, &mut out[offset(i)..]);
+        reading.write_residual(event.sample as usize, &value, &mut out[offset(i)..]);
     }
     Ok(out)
 }

@@ -132,6 +132,13 @@ impl Tape {
         Self { index: self.index, span: self.span, ..thinned }
     }
 
+    /// The same run with its sensors as late as they are in a model.
+    pub(crate) fn as_late_as(&self, built: &Built) -> Self {
+        let late = |r: &Reading| built.sensor(&r.channel).map_or(0.0, |(_, sensor)| sensor.delay.max(0.0));
+        let readings = self.readings.iter().map(|r| Reading { late_s: late(r), ..r.clone() }).collect();
+        Self { readings, ..self.clone() }
+    }
+
     /// The same run with other samples.
     pub(crate) fn with_readings(&self, readings: Vec<Reading>) -> Self {
         Self { index: self.index, ..Self::assemble((&self.file, self.role), self.commands.clone(), readings) }
@@ -226,7 +233,7 @@ fn readings_of(set: &RecordingSet, prefix: &str, quantity: Quantity, group: &[(u
         let times = part[0].1.times.clone();
         let values = (0..times.len()).map(|i| value_at(part, i, orientation)).collect();
         let axes = if orientation { vec![0, 1, 2] } else { part.iter().map(|(k, _)| *k).collect() };
-        Reading { channel: prefix.to_owned(), quantity, axes, sigma, times: times.to_vec(), values }
+        Reading { channel: prefix.to_owned(), quantity, axes, sigma, times: times.to_vec(), values, late_s: 0.0 }
     };
     parts.iter().filter(|p| !is_orientation(&quantity) || p.len() == 4).map(of_part).collect()
 }

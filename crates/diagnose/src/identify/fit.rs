@@ -113,7 +113,7 @@ const UNSTEADY: f64 = 4.0;
 const WRONG: f64 = 4.0;
 /// Standard deviations of its tolerance by which a number moves until its column is taken anew: a mass and an arm whose product shows are told apart by
 /// what their columns differ in, of second order.
-const MOVED: f64 = 0.02;
+const MOVED: f64 = 0.1;
 /// A first state is known no better than so many times what its first interval shows of it.
 const UNKNOWN: f64 = 1e4;
 /// Largest prior standard deviation of a first state's coordinate, its own unit.
