@@ -121,6 +121,10 @@ mod tests {
         // Three standard deviations are the end of it.
         let (h, x) = &set.moved(&[(0, 0)], &[1.0]).members[0];
         assert!((x[0] - 4.36).abs() < 1e-12 && h.is_at_bound(x));
+        // There, and only there, it may become a finding.
+        let own = || h.clone();
+        assert!(set.still_open(own()).is_none() && set.moved(&[(0, 0)], &[1.0]).still_open(own()).is_some());
+        assert!((set.within_tolerances()[0] - 2.0).abs() < 1e-12);
         // The same number as a finding takes its place.
         let finding = hypotheses(&facts()).into_iter().find(|h| h.name == "body-mass").unwrap_or_else(|| h.clone());
         let with = set.with(&finding, &[5.0]);

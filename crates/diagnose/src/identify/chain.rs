@@ -69,10 +69,21 @@ pub struct Smoothed {
     pub squares: Vec<Vec<(u16, f64)>>,
 }
 
+/// A run with its states and forces eliminated, and what it takes to find them.
+#[derive(Debug)]
+pub struct Filtered {
+    /// What is left of it.
+    pub marginal: Marginal,
+    seen: Vec<Seen>,
+}
+
 /// One interval as the filter has seen it.
+#[derive(Debug)]
 struct Seen {
     /// Products over all channels.
     gram: DMatrix<f64>,
+    /// HᵀH.
+    information: DMatrix<f64>,
     /// Standard deviation of its force.
     force: DVector<f64>,
     n: Cholesky<f64, Dyn>,
@@ -101,7 +112,8 @@ fn filter<N: Borrow<Node>>(
         let gram = node.weighted(noise);
         let (zz, zy) = (gram.view((0, 0), (n_u, n_u)), gram.view((0, n_u), (n_u, width)));
         let (zs, sy) = (zz.columns(0, n_x), zy.rows(0, n_x));
-        let n = with_unit(rooted(&rooted(&zz.into_owned(), &l, force).transpose(), &l, force));
+        let information = rooted(&rooted(&zz.into_owned(), &l, force).transpose(), &l, force);
+        let n = with_unit(&information);
         let hv = rooted(&(zy + zs * &m), &l, force);
         let taken = n.solve(&hv);
         let crossed = sy.tr_mul(&m);
@@ -112,7 +124,7 @@ fn filter<N: Borrow<Node>>(
         let t = beside(&(&node.a * &l), &scaled(&node.b, force));
         let next_m = &node.a * &m + &node.d - &t * &taken;
         let next_l = root(&n, &t);
-        look(Seen { gram, force: force.clone(), n, taken, t, l, m });
+        look(Seen { gram, information, force: force.clone(), n, taken, t, l, m });
         (l, m) = (next_l, next_m);
     }
     Marginal { gram: total, log_det }
@@ -136,25 +148,31 @@ pub fn eliminate<N: Borrow<Node>>(nodes: impl IntoIterator<Item = N>, prior: Pri
     filter(nodes, prior, |_| ())
 }
 
-/// States and forces of a run at `theta`.
-pub fn smooth(nodes: &[Node], prior: Prior<'_>, theta: &DVector<f64>) -> Smoothed {
+/// The same with all that it takes to find them.
+pub fn filtered(nodes: &[Node], prior: Prior<'_>) -> Filtered {
     let mut seen = Vec::with_capacity(nodes.len());
-    filter(nodes, prior, |s| seen.push(s));
+    let marginal = filter(nodes, prior, |s| seen.push(s));
+    Filtered { marginal, seen }
+}
+
+/// States and forces of a run at `theta`.
+pub fn smooth(nodes: &[Node], filtered: &Filtered, theta: &DVector<f64>) -> Smoothed {
+    let Filtered { seen, .. } = filtered;
     let y = theta.push(1.0);
-    let n_x = prior.start.len();
+    let n_x = nodes.first().map_or(0, |n| n.a.ncols());
     let n_f = nodes.first().map_or(0, |n| n.b.ncols());
     let n_u = n_x + n_f;
     let mut gradient = DVector::zeros(n_x);
     let mut later = DMatrix::zeros(n_x, n_x);
     let mut out = Smoothed::default();
-    for (node, seen) in nodes.iter().zip(&seen).rev() {
+    for (node, seen) in nodes.iter().zip(seen).rev() {
         let zeta = -(&seen.taken * &y) - seen.n.solve(&seen.t.tr_mul(&gradient));
         let (xi, phi) = (zeta.rows(0, n_x), zeta.rows(n_x, n_f));
         let state = &seen.m * &y + &seen.l * xi;
         let force = phi.component_mul(&seen.force);
         let all = DVector::from_iterator(n_u + y.len(), state.iter().chain(&force).chain(&y).copied());
         gradient = seen.gram.rows(0, n_x) * &all + node.a.tr_mul(&gradient);
-        let known = with_unit(seen.information() + seen.t.tr_mul(&(&later * &seen.t)));
+        let known = with_unit(&(&seen.information + seen.t.tr_mul(&(&later * &seen.t))));
         let covariance = known.inverse();
         let spread = covariance.diagonal().rows(n_x, n_f).into_owned();
         let doubt = spread_of(&covariance, &seen.l, &seen.force);
@@ -173,15 +191,6 @@ pub fn smooth(nodes: &[Node], prior: Prior<'_>, theta: &DVector<f64>) -> Smoothe
     out.variances.reverse();
     out.squares.reverse();
     out
-}
-
-impl Seen {
-    /// HᵀH.
-    fn information(&self) -> DMatrix<f64> {
-        let n_u = self.t.ncols();
-        let zz = self.gram.view((0, 0), (n_u, n_u)).into_owned();
-        rooted(&rooted(&zz, &self.l, &self.force).transpose(), &self.l, &self.force)
-    }
 }
 
 /// Covariance of (δs, f) from that of ζ.
@@ -204,7 +213,7 @@ fn told_by(node: &Node, Seen { gram, force, .. }: &Seen, later: &DMatrix<f64>) -
     let ss = gram.view((0, 0), (n_x, n_x)) + node.a.tr_mul(&la);
     let sf = scaled(&gram.view((0, n_x), (n_x, n_f)).into_owned(), force) + node.a.tr_mul(&lb);
     let own = scaled(&gram.view((n_x, n_x), (n_f, n_f)).into_owned(), force).transpose();
-    let ff = with_unit(scaled(&own, force) + b.tr_mul(&lb));
+    let ff = with_unit(&(scaled(&own, force) + b.tr_mul(&lb)));
     let information = ss - &sf * ff.solve(&sf.transpose());
     0.5 * (&information + information.transpose())
 }
@@ -225,7 +234,7 @@ pub fn update(node: &Node, l: &DMatrix<f64>, force: &DVector<f64>) -> Update {
     let n_u = node.a.ncols() + node.b.ncols();
     let gram = node.grams.iter().fold(DMatrix::zeros(n_u + 1, n_u + 1), |sum, g| sum + &g.1);
     let zz = gram.view((0, 0), (n_u, n_u)).into_owned();
-    let n = with_unit(rooted(&rooted(&zz, l, force).transpose(), l, force));
+    let n = with_unit(&rooted(&rooted(&zz, l, force).transpose(), l, force));
     let hv = rooted(&gram.view((0, n_u), (n_u, 1)).into_owned(), l, force);
     let zeta = -n.solve(&hv).column(0);
     let t = beside(&(&node.a * l), &scaled(&node.b, force));
@@ -234,8 +243,8 @@ pub fn update(node: &Node, l: &DMatrix<f64>, force: &DVector<f64>) -> Update {
 }
 
 /// 1 + X, factored; X is not negative but for round-off, which is scaled away where it counts.
-fn with_unit(x: DMatrix<f64>) -> Cholesky<f64, Dyn> {
-    let mut x = 0.5 * (&x + x.transpose());
+fn with_unit(x: &DMatrix<f64>) -> Cholesky<f64, Dyn> {
+    let mut x = 0.5 * (x + x.transpose());
     let floor = ROUND_OFF * x.diagonal().amax();
     (0..x.nrows()).for_each(|i| x[(i, i)] += 1.0);
     if let Some(c) = Cholesky::new(x.clone()) {
@@ -378,7 +387,7 @@ mod tests {
             let information = DMatrix::identity(j.ncols(), j.ncols()) + j.tr_mul(&j);
             let covariance = information.try_inverse().expect("it is positive");
             let z = -(&covariance * j.tr_mul(&(&y * theta.push(1.0))));
-            let found = smooth(&nodes, prior, &theta);
+            let found = smooth(&nodes, &filtered(&nodes, prior), &theta);
             for i in 0..INTERVALS {
                 let q = prior.force[i][0];
                 assert!((found.forces[i][0] - q * z[STATES + i]).abs() < 1e-12);
@@ -403,7 +412,7 @@ mod tests {
         let (start, none) = (DVector::from_vec(vec![2.0, 0.5]), vec![DVector::zeros(FORCES); nodes.len()]);
         let noise = vec![DVector::from_element(2, 1.0); nodes.len()];
         let prior = Prior { start: &start, force: &none, noise: &noise };
-        let found = smooth(&nodes, prior, &DVector::zeros(NUMBERS));
+        let found = smooth(&nodes, &filtered(&nodes, prior), &DVector::zeros(NUMBERS));
         for i in 1..INTERVALS {
             let next = &nodes[i - 1].a * &found.states[i - 1] + nodes[i - 1].d.column(NUMBERS);
             assert!((&next - &found.states[i]).amax() < 1e-12, "it is continuous");

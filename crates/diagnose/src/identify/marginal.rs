@@ -18,7 +18,7 @@
 //!
 //!   w = (1 + ν) / (ν + ⟨f²⟩/q²),     −2 log p(w) = ν (w − 1 − ln w)                (Lange, Little and Taylor 1989)
 
-use super::chain::{Marginal, Node, Prior, Smoothed, eliminate, smooth};
+use super::chain::{Filtered, Marginal, Node, Prior, Smoothed, eliminate, filtered, smooth};
 use super::track::{Link, Side};
 use crate::fit::pseudo_inverse;
 use nalgebra::{DMatrix, DVector};
@@ -175,8 +175,16 @@ fn log_noise(samples: &[Vec<(u16, f64)>], factors: &[DVector<f64>]) -> f64 {
 impl Chain {
     /// States and forces at some numbers.
     pub fn smoothed(&self, spread: &Spread, theta: &DVector<f64>) -> Smoothed {
+        smooth(&self.nodes, &self.filtered(spread), theta)
+    }
+
+    /// Products of the numbers' columns, states and forces eliminated, and what it takes to find these.
+    fn filtered(&self, spread: &Spread) -> Filtered {
         let [noise, force] = spread.by_interval(self.run, self.nodes.len());
-        smooth(&self.nodes, Prior { start: &self.start, force: &force, noise: &noise }, theta)
+        let mut found = filtered(&self.nodes, Prior { start: &self.start, force: &force, noise: &noise });
+        let log_det = &mut found.marginal.log_det;
+        *log_det = *log_det + log_noise(&self.samples, &noise) + spread.price_of(self.run, self.price);
+        found
     }
 
     /// Largest mean square of a channel in an interval without a factor of its own, units of the channel's noise.
@@ -249,20 +257,24 @@ pub fn solve(k: &Marginal, ridge: Option<&DMatrix<f64>>, spread: &Spread) -> Est
 
 /// Numbers and spread together, from a given spread, in so many steps at most.
 pub fn estimate(runs: &[Chain], ridge: Option<&DMatrix<f64>>, spread: &Spread, steps: usize) -> Estimate {
-    let at = |spread: &Spread| solve(&sum(&products(runs, spread)), ridge, spread);
+    let at = |spread: &Spread| {
+        let filtered: Vec<Filtered> = runs.par_iter().map(|run| run.filtered(spread)).collect();
+        let parts: Vec<Marginal> = filtered.iter().map(|f| f.marginal.clone()).collect();
+        Stand { estimate: solve(&sum(&parts), ridge, spread), filtered }
+    };
     let mut now = at(spread);
     let mut may_be_idle = true;
     for _ in 0..steps {
-        let growth = growth(runs, &now);
+        let growth = now.growth(runs);
         if may_be_idle {
             // Towards zero each step is shorter than the last: what there is none of is left out at once.
             now = without_idle(now, &growth, &at);
         }
-        let mut next = at(&now.spread.grown(&growth, RELAXED));
-        if next.score.is_nan() || next.score > now.score {
-            next = at(&now.spread.grown(&growth, 1.0));
+        let mut next = at(&now.estimate.spread.grown(&growth, RELAXED));
+        if next.estimate.score.is_nan() || next.estimate.score > now.estimate.score {
+            next = at(&now.estimate.spread.grown(&growth, 1.0));
         }
-        let fall = now.score - next.score;
+        let fall = now.estimate.score - next.estimate.score;
         if fall.is_nan() || fall <= 0.0 {
             break;
         }
@@ -272,17 +284,24 @@ pub fn estimate(runs: &[Chain], ridge: Option<&DMatrix<f64>>, spread: &Spread, s
         }
         may_be_idle = growth.force.iter().any(|g| *g < SHRINKING);
     }
-    now
+    now.estimate
+}
+
+/// Numbers at a spread, and the runs as the filter has seen them there.
+struct Stand {
+    estimate: Estimate,
+    filtered: Vec<Filtered>,
 }
 
 /// The same without forces that shrink and are not needed, all at once or one by one.
-fn without_idle(now: Estimate, growth: &Spread, at: &dyn Fn(&Spread) -> Estimate) -> Estimate {
-    let shrinks = |j: &usize| growth.force[*j] < SHRINKING && now.spread.force[*j] > f64::MIN_POSITIVE.sqrt();
+fn without_idle(now: Stand, growth: &Spread, at: &dyn Fn(&Spread) -> Stand) -> Stand {
+    let force = &now.estimate.spread.force;
+    let shrinks = |j: &usize| growth.force[*j] < SHRINKING && force[*j] > f64::MIN_POSITIVE.sqrt();
     let idle: Vec<usize> = (0..growth.force.len()).filter(shrinks).collect();
-    let without = |now: &Estimate, forces: &[usize]| {
-        let mut spread = now.spread.clone();
+    let without = |now: &Stand, forces: &[usize]| {
+        let mut spread = now.estimate.spread.clone();
         forces.iter().for_each(|j| spread.force[*j] *= NONE);
-        Some(at(&spread)).filter(|next| next.score < now.score)
+        Some(at(&spread)).filter(|next| next.estimate.score < now.estimate.score)
     };
     if let Some(next) = (!idle.is_empty()).then(|| without(&now, &idle)).flatten() {
         return next;
@@ -293,6 +312,52 @@ fn without_idle(now: Estimate, growth: &Spread, at: &dyn Fn(&Spread) -> Estimate
 /// Growth below which a force may be none, and the factor of one that is tried for none.
 const SHRINKING: f64 = 0.7;
 const NONE: f64 = 1e-3;
+
+impl Stand {
+    /// Growth of all variances in one step, and what is different in single intervals then.
+    fn growth(&self, runs: &[Chain]) -> Spread {
+        let Self { estimate: now, filtered } = self;
+        let (n_f, n_c) = (now.spread.force.len(), now.spread.noise.len());
+        let smooth = |(run, seen): (&Chain, &Filtered)| smooth(&run.nodes, seen, &now.theta);
+        let smoothed: Vec<Smoothed> = runs.par_iter().zip(filtered).map(smooth).collect();
+        let worst = FIRST * runs.iter().zip(&smoothed).map(|(run, s)| run.worst(s, &now.spread)).fold(0.0, f64::max);
+        let of = |(run, s): (&Chain, &Smoothed)| {
+            let mut sums = Squares::new(n_f, n_c);
+            sums.intervals = s.forces.len() as f64;
+            let mut local = Vec::with_capacity(s.squares.len());
+            for (i, (squares, samples)) in s.squares.iter().zip(&run.samples).enumerate() {
+                let before = now.spread.local_of(run.run, i);
+                let ones = DVector::from_element;
+                let mut own = Local { noise: ones(n_c, 1.0), force: ones(n_f, 1.0) };
+                for ((channel, square), (_, n)) in squares.iter().zip(samples) {
+                    let channel = *channel as usize;
+                    let square = square / now.spread.noise[channel].powi(2);
+                    if before.is_some_and(|l| l.noise[channel] > 1.0) || square >= worst * n {
+                        own.noise[channel] = factor_of_its_own(square, *n, run.price);
+                    }
+                    sums.noise[channel] += square / own.noise[channel].powi(2);
+                    sums.samples[channel] += n;
+                }
+                for j in (0..n_f).filter(|j| now.spread.force[*j] > 0.0) {
+                    let square = s.forces[i][j].powi(2) + s.variances[i][j];
+                    let w = (1.0 + TAILS) / (TAILS + square / now.spread.force[j].powi(2));
+                    own.force[j] = w.powf(-0.5);
+                    sums.force[j] += w * square;
+                }
+                local.push(own);
+            }
+            (sums, local)
+        };
+        let (parts, local): (Vec<Squares>, Vec<_>) = runs.par_iter().zip(&smoothed).map(of).unzip();
+        let all = parts.iter().fold(Squares::new(n_f, n_c), Squares::plus);
+        let ratio = |x: f64| if x.is_finite() { x.clamp(LEAP[0], LEAP[1]) } else { 1.0 };
+        let of_force = |s: f64, q: f64| if q > 0.0 { ratio(s / (all.intervals * q * q)) } else { 1.0 };
+        let of_noise = |s: f64, n: f64| if n > 0.0 { ratio(s / n) } else { 1.0 };
+        let (force, noise) =
+            (all.force.zip_map(&now.spread.force, of_force), all.noise.zip_map(&all.samples, of_noise));
+        Spread { force, noise, local }
+    }
+}
 
 impl Spread {
     /// No unknown forces, and noise as it is known.
@@ -362,47 +427,6 @@ impl Spread {
             local: by.local.clone(),
         }
     }
-}
-
-/// Growth of all variances in one step, and what is different in single intervals then.
-fn growth(runs: &[Chain], now: &Estimate) -> Spread {
-    let (n_f, n_c) = (now.spread.force.len(), now.spread.noise.len());
-    let smoothed: Vec<Smoothed> = runs.par_iter().map(|run| run.smoothed(&now.spread, &now.theta)).collect();
-    let worst = FIRST * runs.iter().zip(&smoothed).map(|(run, s)| run.worst(s, &now.spread)).fold(0.0, f64::max);
-    let of = |(run, s): (&Chain, &Smoothed)| {
-        let mut sums = Squares::new(n_f, n_c);
-        sums.intervals = s.forces.len() as f64;
-        let mut local = Vec::with_capacity(s.squares.len());
-        for (i, (squares, samples)) in s.squares.iter().zip(&run.samples).enumerate() {
-            let before = now.spread.local_of(run.run, i);
-            let ones = DVector::from_element;
-            let mut own = Local { noise: ones(n_c, 1.0), force: ones(n_f, 1.0) };
-            for ((channel, square), (_, n)) in squares.iter().zip(samples) {
-                let channel = *channel as usize;
-                let square = square / now.spread.noise[channel].powi(2);
-                if before.is_some_and(|l| l.noise[channel] > 1.0) || square >= worst * n {
-                    own.noise[channel] = factor_of_its_own(square, *n, run.price);
-                }
-                sums.noise[channel] += square / own.noise[channel].powi(2);
-                sums.samples[channel] += n;
-            }
-            for j in (0..n_f).filter(|j| now.spread.force[*j] > 0.0) {
-                let square = s.forces[i][j].powi(2) + s.variances[i][j];
-                let w = (1.0 + TAILS) / (TAILS + square / now.spread.force[j].powi(2));
-                own.force[j] = w.powf(-0.5);
-                sums.force[j] += w * square;
-            }
-            local.push(own);
-        }
-        (sums, local)
-    };
-    let (parts, local): (Vec<Squares>, Vec<_>) = runs.par_iter().zip(&smoothed).map(of).unzip();
-    let all = parts.iter().fold(Squares::new(n_f, n_c), Squares::plus);
-    let ratio = |x: f64| if x.is_finite() { x.clamp(LEAP[0], LEAP[1]) } else { 1.0 };
-    let of_force = |s: f64, q: f64| if q > 0.0 { ratio(s / (all.intervals * q * q)) } else { 1.0 };
-    let of_noise = |s: f64, n: f64| if n > 0.0 { ratio(s / n) } else { 1.0 };
-    let (force, noise) = (all.force.zip_map(&now.spread.force, of_force), all.noise.zip_map(&all.samples, of_noise));
-    Spread { force, noise, local }
 }
 
 /// Share of the worst interval's mean square from which on another one may get a factor of its own in the same step.

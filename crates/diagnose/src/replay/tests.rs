@@ -48,6 +48,26 @@ fn a_flight_that_no_force_sensor_cuts_reads_the_same() {
     assert!(a[..100].iter().all(|f| *f == 0.0), "it flew before");
 }
 
+/// A sensor that is late tells of what was before a window at its begin: that is no residual, and nothing else is changed.
+#[test]
+fn what_is_told_of_before_a_window_is_no_residual_of_it() {
+    let (built, tape, start) = docking();
+    let late = 0.01;
+    let readings: Vec<Reading> = tape.readings.iter().map(|r| Reading { late_s: late, ..r.clone() }).collect();
+    let masked = Tape { readings, ..tape.clone() };
+    let span = Span { from: 0.0, to: 0.2 };
+    let read = super::readings(&built, &tape, &start, span, Pace::even(2.5e-4)).expect("it runs").values;
+    let residuals = |tape: &Tape| residuals_of(&read, &built, tape, span).expect("all are measured");
+    let (all, judged) = (residuals(&tape), residuals(&masked));
+    let of_events = tape.events[tape.range(span)].iter().flat_map(|e| [e.time; 3]);
+    let mut unheard = 0;
+    for ((time, a), b) in of_events.zip(&all).zip(&judged) {
+        assert_eq!(*b, if time < late { 0.0 } else { *a });
+        unheard += usize::from(time < late && *a != 0.0);
+    }
+    assert!(unheard > 0, "the chaser is somewhere");
+}
+
 #[test]
 fn a_long_step_in_flight_passes_what_is_read() {
     let (built, tape, start) = docking();
@@ -148,7 +168,8 @@ fn what_is_handed_on_at_a_tick_remembers_what_the_drive_gave() {
     let times: Vec<f64> = (0..=200).map(|i| f64::from(i) * 5e-3).collect();
     let values = vec![Value::Vector(Vec3::zeros()); times.len()];
     let channel = "joint.hinge.velocity".to_owned();
-    let reading = Reading { channel, quantity: gauge.quantity(), axes: vec![0], sigma: 1.0, times, values, late_s: 0.0 };
+    let reading =
+        Reading { channel, quantity: gauge.quantity(), axes: vec![0], sigma: 1.0, times, values, late_s: 0.0 };
     // A torque that changes its sign with every tick of 10 ms.
     let ticks: Vec<f64> = (0..100).map(|i| f64::from(i) * 1e-2).collect();
     let values = (0..100).map(|i| if i % 2 == 0 { 2.0 } else { -1.0 }).collect();
