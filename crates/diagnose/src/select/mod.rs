@@ -9,6 +9,7 @@ mod detail;
 mod enough;
 mod lines;
 pub mod pool;
+mod quiet;
 pub mod regression;
 pub mod scale;
 pub mod search;

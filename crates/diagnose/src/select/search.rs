@@ -5,6 +5,7 @@ use super::enough::Enough;
 use super::gamma_quantile_over_mean;
 use super::lines::lines;
 use super::pool::{Pool, price};
+use super::quiet::{is_as_quiet, quiets};
 use super::regression::{Regression, Spoken};
 use super::scale::Scale;
 use super::sets::{Ground, Grown, LinearSet};
@@ -58,12 +59,10 @@ const MOST: usize = 6;
 const AT_ONCE: usize = 3;
 /// Share of what the unknown forces do that one more effect has to take; and where less than a hundredth of that is left, which may be what the found
 /// laws are off by themselves.
-const FURTHER: [f64; 2] = [0.2, 0.75];
+pub(super) const FURTHER: [f64; 2] = [0.2, 0.75];
 const SMALL: f64 = 0.01;
 /// Share of what the unknown forces do (their power) that may be what steps and difference quotients make of the laws that were found.
 const OWN: f64 = 1e-5;
-/// Factor by which the noise of a channel may grow where it stands for nothing.
-const LOUDER: f64 = 1.01;
 /// Share of what the unknown forces do below which nothing is left to add.
 pub const NEXT_TO_NOTHING: f64 = 1e-3;
 /// Sets of the chain that are fitted in full simulation in a round, and how many of all where promises are broken.
@@ -136,7 +135,11 @@ pub fn search(
         let best = fit_sets(problem, &now, &looked, bounds, &mut found.tried)?;
         // What takes little of what an accepted set leaves stands for something that is not in the library.
         let here = problem.power(&now);
-        let takes_enough = |best: &Fitted| round == 0 || problem.power(best) <= (1.0 - further(here, all)) * here;
+        let takes_enough = |best: &Fitted| {
+            round == 0
+                || problem.power(best) <= (1.0 - further(here, all)) * here
+                || quiets(&best.spread, &now.spread, problem.stage.doubt)
+        };
         let Some(best) = best.filter(takes_enough) else { break };
         now = without_idle(problem, best, (many, all))?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
@@ -211,10 +214,11 @@ struct Bounds {
     all: f64,
 }
 
-/// A set that was fitted, and what its unknown forces do.
+/// A set that was fitted, what its unknown forces do, and how large they and the noise are.
 struct Smaller {
     titles: Vec<String>,
     power: f64,
+    spread: Spread,
 }
 
 /// Fits the sets that promise most in full simulation; the best of them, taken to the end, where it is worth its price.
@@ -264,12 +268,14 @@ fn fit_sets(
         if left.rise < cheapest || power < NEXT_TO_NOTHING * here {
             enough.push(Enough { titles: added.clone(), limit: costs + left.rise });
         }
-        // What a set adds to a smaller one has to take its part of what that leaves.
+        // What a set adds to a smaller one has to take its part of what that leaves, or a sensor's fault.
         let is_idle = |known: &Smaller| {
-            known.titles.iter().all(|t| added.contains(t)) && power > (1.0 - further(known.power, all)) * known.power
+            known.titles.iter().all(|t| added.contains(t))
+                && power > (1.0 - further(known.power, all)) * known.power
+                && !quiets(&fit.spread, &known.spread, problem.stage.doubt)
         };
         let is_idle = smaller.iter().any(is_idle);
-        smaller.push(Smaller { titles: added.clone(), power });
+        smaller.push(Smaller { titles: added.clone(), power, spread: fit.spread.clone() });
         let (scores, taken) = ([now.score, fit.score], (here - power) / all.max(f64::MIN_POSITIVE));
         tried.push(Tried { round, set: fit.set.clone(), added, scores, criteria: [before, after], promised, taken });
         if !is_idle && after < before {
@@ -519,7 +525,7 @@ fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64
         for m in (0..now.set.members.len()).rev().filter(|m| !now.set.members[*m].0.is_tolerated()) {
             let Ok(glance) = problem.fit(&now, now.set.without(m), GLANCE) else { continue };
             // What is worse by far after two steps does not come back.
-            let leaves_own = |fit: &Fitted| problem.power(fit) < OWN * all && is_as_quiet(fit, &now);
+            let leaves_own = |fit: &Fitted| problem.power(fit) < OWN * all && is_as_quiet(&fit.spread, &now.spread);
             if criterion(&glance, many) - criterion(&now, many) > FAR && !leaves_own(&glance) {
                 continue;
             }
@@ -534,11 +540,6 @@ fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64
         now = to_the_end(problem, less);
     }
     Ok(now)
-}
-
-/// Whether a fit takes no more for noise than another one: what a sensor's fault leaves in all samples looks like more of it, not like a force.
-fn is_as_quiet(fit: &Fitted, than: &Fitted) -> bool {
-    fit.spread.noise.iter().zip(&than.spread.noise).all(|(a, b)| *a <= LOUDER * b)
 }
 
 /// The same with laws as the plainer ones that they become, where these are as good by the criterion; and where much is left that no law has, of which
