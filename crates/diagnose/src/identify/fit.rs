@@ -167,12 +167,7 @@ impl<'a> Problem<'a> {
 
     /// The nominal model along all runs.
     pub fn begin(&self) -> Result<Fitted, DiagnoseError> {
-        self.refined(self.begun()?, true)
-    }
-
-    /// The same with intervals of one length.
-    fn begun(&self) -> Result<Fitted, DiagnoseError> {
-        self.shorter(|knots| self.begun_in(knots))
+        self.shorter(|knots| self.refined(self.begun_in(knots)?, true))
     }
 
     /// What can be done with so many intervals of each run; with shorter ones where a replay leaves the range of numbers before its samples correct it.
