@@ -221,6 +221,15 @@ struct Smaller {
     spread: Spread,
 }
 
+impl Smaller {
+    /// Whether it has all of a smaller set and takes less than its part of what that leaves, and no sensor's fault.
+    fn is_idle_beside(&self, known: &Self, all: f64, doubt: f64) -> bool {
+        known.titles.iter().all(|t| self.titles.contains(t))
+            && self.power > (1.0 - further(known.power, all)) * known.power
+            && !quiets(&self.spread, &known.spread, doubt)
+    }
+}
+
 /// Fits the sets that promise most in full simulation; the best of them, taken to the end, where it is worth its price.
 fn fit_sets(
     problem: &Problem<'_>,
@@ -269,13 +278,9 @@ fn fit_sets(
             enough.push(Enough { titles: added.clone(), limit: costs + left.rise });
         }
         // What a set adds to a smaller one has to take its part of what that leaves, or a sensor's fault.
-        let is_idle = |known: &Smaller| {
-            known.titles.iter().all(|t| added.contains(t))
-                && power > (1.0 - further(known.power, all)) * known.power
-                && !quiets(&fit.spread, &known.spread, problem.stage.doubt)
-        };
-        let is_idle = smaller.iter().any(is_idle);
-        smaller.push(Smaller { titles: added.clone(), power, spread: fit.spread.clone() });
+        let own = Smaller { titles: added.clone(), power, spread: fit.spread.clone() };
+        let is_idle = smaller.iter().any(|known| own.is_idle_beside(known, all, problem.stage.doubt));
+        smaller.push(own);
         let (scores, taken) = ([now.score, fit.score], (here - power) / all.max(f64::MIN_POSITIVE));
         tried.push(Tried { round, set: fit.set.clone(), added, scores, criteria: [before, after], promised, taken });
         if !is_idle && after < before {
