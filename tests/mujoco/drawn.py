@@ -5,14 +5,13 @@
 
 For each robot and number of effects `draws` sets: effects, places and sizes at random (0.7 to 1.6 times what LIBRARY says), link masses of the scenario
 off by `mass` and centres of mass by `com` (standard deviations; its [tolerance] says so, but for `untold`), σ stated times `sigma`. Done sets are
-kept, so that it goes on where it was stopped. needs mujoco 4.0 and numpy from PyPI. Prints a table; the last lines are the shares that were right.
+kept, so that it goes on where it was stopped: one OUT for one choice of numbers. Needs mujoco 4.0 and numpy from PyPI. Prints a table; the last lines are the shares that were right.
 """
 
 import json
 import math
 import pathlib
 import random
-import re
 import subprocess
 import sys
 import time
@@ -20,6 +19,9 @@ import time
 import numpy as np
 
 import record
+
+sys.path.insert(0, str(record.HERE.parent / "practice"))
+from wrong_nominals import wrong
 
 # What may be concealed, and how large: at joints by their strength (that of the second joint of the arm is one), or in its own unit.
 LIBRARY = {
@@ -62,30 +64,16 @@ def acting(effects):
     return [("dahl" if kind == "joint-coulomb-friction" else kind, where, size) for kind, where, size in effects]
 
 
-def wrong(urdf, dice, mass, com):
-    """The robot's file with masses and centres that are off."""
-    off = lambda deviation: deviation * max(-MOST, min(MOST, dice.gauss(0.0, 1.0)))
-
-    def inertial(block):
-        text = re.sub(r'(<mass value=")([^"]+)"', lambda m: f'{m.group(1)}{float(m.group(2)) * (1.0 + off(mass)):.9g}"', block.group(0))
-        moved = lambda m: m.group(1) + " ".join(f"{float(x) + off(com):.9g}" for x in m.group(2).split()) + '"'
-        return re.sub(r'(<origin xyz=")([^"]+)"', moved, text, count=1)
-
-    return re.sub(r"<inertial>.*?</inertial>", inertial, urdf, flags=re.S)
-
-
 def write_set(folder, robot_name, effects, seed, options):
     robot, dice = record.ROBOTS[robot_name], random.Random(seed)
     folder.mkdir(parents=True)
     model = record.model_of(robot_name, robot, acting(effects))
-    text = record.manifest(robot_name, "drawn")
-    scaled = lambda m: f"{m.group(1)} = {float(m.group(2)) * options['sigma']:.6g}"
-    (folder / "recording.toml").write_text(re.sub(r'^("[^"]+") = ([0-9.e-]+)$', scaled, text, flags=re.M))
+    (folder / "recording.toml").write_text(record.manifest(robot_name, options["sigma"]))
     for run in range(record.RUNS):
         recorded = record.record(model, robot, acting(effects), np.random.default_rng([seed, run]))
         record.write_run(folder / f"run-{run + 1}.csv", robot, recorded, np.random.default_rng([seed, run, 7]))
     urdf = (record.HERE / f"{robot_name}.urdf").read_text()
-    (folder.parent / f"{robot_name}.urdf").write_text(wrong(urdf, dice, options["mass"], options["com"]))
+    (folder.parent / f"{robot_name}.urdf").write_text(wrong(urdf, dice, options["mass"], options["com"], MOST))
     scenario = record.scenario(robot_name, robot)
     if not options["untold"] and options["mass"] > 0:
         scenario += f"\n[tolerance]\nmass = {options['mass']}\ncom_m = {options['com']}\n"

@@ -220,13 +220,14 @@ def write_run(path, robot, recorded, dice):
     path.write_text("\n".join(lines) + "\n")
 
 
-def manifest(robot, case):
+def manifest(robot, stated=1.0):
+    """What a set says of itself, the noise of its sensors times `stated`."""
     text = f'format = 1\nrig = "{robot}"\ntitle = "{robot} by MuJoCo"\n\n[noise]\n'
     for j in ROBOTS[robot]["joints"]:
-        text += f'"joint.{j}.position" = {NOISE["position"]}\n"joint.{j}.velocity" = {NOISE["velocity"]}\n'
+        text += f'"joint.{j}.position" = {NOISE["position"] * stated:.6g}\n"joint.{j}.velocity" = {NOISE["velocity"] * stated:.6g}\n'
     if ROBOTS[robot]["base"] == "free":
         for channel, key in (("position", "base"), ("orientation", "turn"), ("angular_velocity", "gyro")):
-            text += f'"body.hull.{channel}" = {NOISE[key]}\n'
+            text += f'"body.hull.{channel}" = {NOISE[key] * stated:.6g}\n'
     for i in range(RUNS):
         text += f'\n[[run]]\nfile = "run-{i + 1}.csv"\nrole = "{"fit" if i < 3 else "holdout"}"\nnote = "sines {i + 1}"\n'
     return text
@@ -267,7 +268,7 @@ def main():
             acting = [("dahl" if case == "dahl" else effect, where, size) for effect, where, size in effects]
             model = model_of(name, robot, acting)
             (folder / case).mkdir(exist_ok=True)
-            (folder / case / "recording.toml").write_text(manifest(name, case))
+            (folder / case / "recording.toml").write_text(manifest(name))
             for run in range(RUNS):
                 dice = np.random.default_rng([number, run])
                 recorded = record(model, robot, acting, dice)

@@ -7,18 +7,22 @@
 The recording is the truth; what a diagnosis has to find in it stays what it was.
 """
 
+import math
 import pathlib
 import random
 import re
 import sys
 
 
-def wrong(urdf, dice, mass, com):
+def wrong(urdf, dice, mass, com, most=math.inf):
+    """A robot's file with masses and centres of mass off by standard deviations `mass` and `com`, by no more than `most` of them."""
+    off = lambda deviation: deviation * max(-most, min(most, dice.gauss(0.0, 1.0)))
+
     def inertial(block):
         text = block.group(0)
-        factor = dice.gauss(1.0, mass)
+        factor = 1.0 + off(mass)
         text = re.sub(r'(<mass\s+value=")([^"]+)"', lambda m: f'{m.group(1)}{float(m.group(2)) * factor:.9g}"', text)
-        moved = lambda m: m.group(1) + " ".join(f"{float(x) + dice.gauss(0.0, com):.9g}" for x in m.group(2).split()) + '"'
+        moved = lambda m: m.group(1) + " ".join(f"{float(x) + off(com):.9g}" for x in m.group(2).split()) + '"'
         return re.sub(r'(<origin\s[^>]*xyz=")([^"]+)"', moved, text, count=1)
 
     return re.sub(r"<inertial>.*?</inertial>", inertial, urdf, flags=re.S)
@@ -40,4 +44,5 @@ def main():
     (out / scenario.name).write_text(text)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -49,9 +49,7 @@ pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Cour
     let within = catalogue::within(&Facts::new(&nominal.built, stage.tapes), &plant.scenario.tolerance);
     if !within.members.is_empty() && left.rise > left.bound {
         nominal = to_the_end(&problem, problem.fit(&nominal, within, WITHIN)?);
-        let left = remainder(&problem, &nominal)?;
-        let said = format!("numbers within their tolerances leave {:.1}, noise at most {:.1}", left.rise, left.bound);
-        stage.work.watch.step(&said);
+        stage.work.watch.step(&format!("numbers within their tolerances: −2 log L {:.1}", nominal.score));
     }
     let hypotheses = |now: &Fitted| hypotheses_of(&problem, now, own);
     let usual = || catalogue::within(&Facts::new(&nominal.built, stage.tapes), &USUAL);

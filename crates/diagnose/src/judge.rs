@@ -11,6 +11,7 @@ use crate::tape::Tape;
 use nalgebra::DVector;
 use rayon::prelude::*;
 use record::Role;
+use std::borrow::Cow;
 
 /// A model with the starts that suit it best, and what its predictions are off by.
 #[derive(Clone, Debug)]
@@ -55,8 +56,7 @@ pub fn judge(
     (nominal, found): ([&Fit; 2], &Fit),
     (window, follows): (f64, bool),
 ) -> Result<Judgement, DiagnoseError> {
-    let late = |stage: &Stage<'_>| -> Vec<Tape> { stage.tapes.iter().map(|t| t.as_late_as(&found.built)).collect() };
-    let [few_tapes, all_tapes] = [late(few), late(all)];
+    let [few_tapes, all_tapes] = [few, all].map(|stage| as_late_as(&found.built, stage.tapes));
     let few = &Stage { tapes: &few_tapes, ..*few };
     let all = &Stage { tapes: &all_tapes, ..*all };
     let predict = |fit: Fit| Prediction {
@@ -79,6 +79,14 @@ pub fn judge(
         false => of([found, found])?,
     };
     Ok(Judgement { windowed: [windows_before, windows_after], whole: [runs_before, runs_after] })
+}
+
+/// Runs with their sensors as late as they are in a model; as they were where none is.
+fn as_late_as<'t>(built: &Built, tapes: &'t [Tape]) -> Cow<'t, [Tape]> {
+    match tapes.iter().any(|tape| tape.is_late_in(built)) {
+        true => tapes.iter().map(|tape| tape.as_late_as(built)).collect(),
+        false => Cow::Borrowed(tapes),
+    }
 }
 
 /// A model whose starts are estimated to judge it.

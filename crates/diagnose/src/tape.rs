@@ -134,9 +134,13 @@ impl Tape {
 
     /// The same run with its sensors as late as they are in a model.
     pub(crate) fn as_late_as(&self, built: &Built) -> Self {
-        let late = |r: &Reading| built.sensor(&r.channel).map_or(0.0, |(_, sensor)| sensor.delay.max(0.0));
-        let readings = self.readings.iter().map(|r| Reading { late_s: late(r), ..r.clone() }).collect();
+        let readings = self.readings.iter().map(|r| Reading { late_s: lateness(built, r), ..r.clone() }).collect();
         Self { readings, ..self.clone() }
+    }
+
+    /// Whether one of its sensors is late in a model.
+    pub(crate) fn is_late_in(&self, built: &Built) -> bool {
+        self.readings.iter().any(|r| lateness(built, r) > 0.0)
     }
 
     /// The same run with other samples.
@@ -168,6 +172,11 @@ impl Tape {
         let end = if span.to >= self.span.1 { self.events.len() } else { before(span.to) };
         before(span.from)..end.max(before(span.from))
     }
+}
+
+/// How late a reading's sensor is in a model, s.
+fn lateness(built: &Built, reading: &Reading) -> f64 {
+    built.sensor(&reading.channel).map_or(0.0, |(_, sensor)| sensor.delay.max(0.0))
 }
 
 /// The runs and the nominal model, the plant told what is read and driven.

@@ -172,6 +172,11 @@ fn log_noise(samples: &[Vec<(u16, f64)>], factors: &[DVector<f64>]) -> f64 {
     samples.iter().zip(factors).map(of).sum()
 }
 
+/// A run's products with what factors of the noise and all that is different in single intervals add.
+fn priced(found: Marginal, samples: &[Vec<(u16, f64)>], factors: &[DVector<f64>], price: f64) -> Marginal {
+    Marginal { log_det: found.log_det + log_noise(samples, factors) + price, ..found }
+}
+
 impl Chain {
     /// States and forces at some numbers.
     pub fn smoothed(&self, spread: &Spread, theta: &DVector<f64>) -> Smoothed {
@@ -182,8 +187,7 @@ impl Chain {
     fn filtered(&self, spread: &Spread) -> Filtered {
         let [noise, force] = spread.by_interval(self.run, self.nodes.len());
         let mut found = filtered(&self.nodes, Prior { start: &self.start, force: &force, noise: &noise });
-        let log_det = &mut found.marginal.log_det;
-        *log_det = *log_det + log_noise(&self.samples, &noise) + spread.price_of(self.run, self.price);
+        found.marginal = priced(found.marginal, &self.samples, &noise, spread.price_of(self.run, self.price));
         found
     }
 
@@ -206,8 +210,7 @@ impl Chain {
     fn products(&self, spread: &Spread) -> Marginal {
         let [noise, force] = spread.by_interval(self.run, self.nodes.len());
         let found = eliminate(&self.nodes, Prior { start: &self.start, force: &force, noise: &noise });
-        let log_noise = log_noise(&self.samples, &noise);
-        Marginal { log_det: found.log_det + log_noise + spread.price_of(self.run, self.price), ..found }
+        priced(found, &self.samples, &noise, spread.price_of(self.run, self.price))
     }
 }
 
@@ -225,17 +228,17 @@ pub fn wide_products(runs: &[Linear], columns: &[usize], spread: &Spread) -> Mar
         let [factors, force] = spread.by_interval(run.run, run.channels.len());
         let ones = vec![DVector::from_element(spread.noise.len(), 1.0); factors.len()];
         let found = eliminate(run.summed(columns, &factors), Prior { start: &run.start, force: &force, noise: &ones });
-        let log_noise = log_noise(&run.samples(), &factors);
-        Marginal { log_det: found.log_det + log_noise + spread.price_of(run.run, run.price), ..found }
+        priced(found, &run.samples(), &factors, spread.price_of(run.run, run.price))
     };
     sum(&runs.par_iter().map(of).collect::<Vec<_>>())
 }
 
 /// The sum over runs.
-pub fn sum(parts: &[Marginal]) -> Marginal {
-    let width = parts.first().map_or(1, |p| p.gram.ncols());
+pub fn sum<'m>(parts: impl IntoIterator<Item = &'m Marginal>) -> Marginal {
+    let mut parts = parts.into_iter().peekable();
+    let width = parts.peek().map_or(1, |p| p.gram.ncols());
     let zero = Marginal { gram: DMatrix::zeros(width, width), log_det: 0.0 };
-    parts.iter().fold(zero, |sum, p| Marginal { gram: sum.gram + &p.gram, log_det: sum.log_det + p.log_det })
+    parts.fold(zero, |sum, p| Marginal { gram: sum.gram + &p.gram, log_det: sum.log_det + p.log_det })
 }
 
 /// −2 log likelihood of a model without numbers at a given spread.
@@ -259,8 +262,8 @@ pub fn solve(k: &Marginal, ridge: Option<&DMatrix<f64>>, spread: &Spread) -> Est
 pub fn estimate(runs: &[Chain], ridge: Option<&DMatrix<f64>>, spread: &Spread, steps: usize) -> Estimate {
     let at = |spread: &Spread| {
         let filtered: Vec<Filtered> = runs.par_iter().map(|run| run.filtered(spread)).collect();
-        let parts: Vec<Marginal> = filtered.iter().map(|f| f.marginal.clone()).collect();
-        Stand { estimate: solve(&sum(&parts), ridge, spread), filtered }
+        let all = sum(filtered.iter().map(|f| &f.marginal));
+        Stand { estimate: solve(&all, ridge, spread), filtered }
     };
     let mut now = at(spread);
     let mut may_be_idle = true;

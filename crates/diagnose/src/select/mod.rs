@@ -7,9 +7,9 @@
 
 mod detail;
 mod enough;
+mod left;
 mod lines;
 pub mod pool;
-mod quiet;
 pub mod regression;
 pub mod scale;
 pub mod search;

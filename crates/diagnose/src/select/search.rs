@@ -3,9 +3,9 @@
 use super::detail::{but_for_a_detail, relaxed};
 use super::enough::Enough;
 use super::gamma_quantile_over_mean;
+use super::left::{Left, Smaller, is_as_quiet};
 use super::lines::lines;
 use super::pool::{Pool, price};
-use super::quiet::{is_as_quiet, quiets};
 use super::regression::{Regression, Spoken};
 use super::scale::Scale;
 use super::sets::{Ground, Grown, LinearSet};
@@ -134,12 +134,9 @@ pub fn search(
         }
         let best = fit_sets(problem, &now, &looked, bounds, &mut found.tried)?;
         // What takes little of what an accepted set leaves stands for something that is not in the library.
-        let here = problem.power(&now);
-        let takes_enough = |best: &Fitted| {
-            round == 0
-                || problem.power(best) <= (1.0 - further(here, all)) * here
-                || quiets(&best.spread, &now.spread, problem.stage.doubt)
-        };
+        let left_by = |fit: &Fitted| Left { power: problem.power(fit), spread: fit.spread.clone() };
+        let doubt = problem.stage.doubt;
+        let takes_enough = |best: &Fitted| round == 0 || left_by(best).takes_its_part_of(&left_by(&now), all, doubt);
         let Some(best) = best.filter(takes_enough) else { break };
         now = without_idle(problem, best, (many, all))?;
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
@@ -190,7 +187,7 @@ fn corrected(
 }
 
 /// Share of what unknown forces do beside a set that one more effect has to take.
-fn further(beside: f64, all: f64) -> f64 {
+pub(super) fn further(beside: f64, all: f64) -> f64 {
     if beside < OWN * all {
         return 1.0;
     }
@@ -212,22 +209,6 @@ struct Bounds {
     cheapest: f64,
     /// What the unknown forces beside the nominal model do.
     all: f64,
-}
-
-/// A set that was fitted, what its unknown forces do, and how large they and the noise are.
-struct Smaller {
-    titles: Vec<String>,
-    power: f64,
-    spread: Spread,
-}
-
-impl Smaller {
-    /// Whether it has all of a smaller set and takes less than its part of what that leaves, and no sensor's fault.
-    fn is_idle_beside(&self, known: &Self, all: f64, doubt: f64) -> bool {
-        known.titles.iter().all(|t| self.titles.contains(t))
-            && self.power > (1.0 - further(known.power, all)) * known.power
-            && !quiets(&self.spread, &known.spread, doubt)
-    }
 }
 
 /// Fits the sets that promise most in full simulation; the best of them, taken to the end, where it is worth its price.
@@ -278,7 +259,7 @@ fn fit_sets(
             enough.push(Enough { titles: added.clone(), limit: costs + left.rise });
         }
         // What a set adds to a smaller one has to take its part of what that leaves, or a sensor's fault.
-        let own = Smaller { titles: added.clone(), power, spread: fit.spread.clone() };
+        let own = Smaller { titles: added.clone(), left: Left { power, spread: fit.spread.clone() } };
         let is_idle = smaller.iter().any(|known| own.is_idle_beside(known, all, problem.stage.doubt));
         smaller.push(own);
         let (scores, taken) = ([now.score, fit.score], (here - power) / all.max(f64::MIN_POSITIVE));

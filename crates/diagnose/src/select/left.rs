@@ -1,12 +1,38 @@
-//! What a sensor's fault leaves: more noise of its channel, and no force that is missing.
+//! What fits leave, held against each other: forces that are missing, and more noise where a sensor's fault is no force.
 
-use super::search::FURTHER;
+use super::search::{FURTHER, further};
 use crate::identify::marginal::Spread;
 
 /// Factor by which the noise of a channel may grow where it stands for nothing.
 const LOUDER: f64 = 1.01;
 /// Mean square beyond that of its noise from which on a channel is loud.
 const LOUD: f64 = 0.1;
+
+/// What a fit leaves: what its unknown forces do, and how large they and the noise are.
+pub(super) struct Left {
+    pub power: f64,
+    pub spread: Spread,
+}
+
+impl Left {
+    /// Whether it takes its part of what another one leaves, or a sensor's fault. `all`: what the nominal model leaves.
+    pub(super) fn takes_its_part_of(&self, known: &Self, all: f64, doubt: f64) -> bool {
+        self.power <= (1.0 - further(known.power, all)) * known.power || quiets(&self.spread, &known.spread, doubt)
+    }
+}
+
+/// A set that was fitted, and what it leaves.
+pub(super) struct Smaller {
+    pub titles: Vec<String>,
+    pub left: Left,
+}
+
+impl Smaller {
+    /// Whether it has all of a smaller set and what it adds takes less than its part.
+    pub(super) fn is_idle_beside(&self, known: &Self, all: f64, doubt: f64) -> bool {
+        known.titles.iter().all(|t| self.titles.contains(t)) && !self.left.takes_its_part_of(&known.left, all, doubt)
+    }
+}
 
 /// Whether a spread takes no more for noise than another one.
 pub(super) fn is_as_quiet(spread: &Spread, than: &Spread) -> bool {
@@ -15,7 +41,7 @@ pub(super) fn is_as_quiet(spread: &Spread, than: &Spread) -> bool {
 
 /// Whether a channel that reads with more noise beside another spread than its sensor has is next to right beside this one: what is left of the unknown
 /// forces does not say how much of a sensor's fault is taken. `doubt`: mean square that a wrong figure of the noise may stand for.
-pub(super) fn quiets(spread: &Spread, than: &Spread, doubt: f64) -> bool {
+fn quiets(spread: &Spread, than: &Spread, doubt: f64) -> bool {
     let excess = |noise: &f64| (noise * noise - 1.0 - doubt).max(0.0);
     let is_quieted =
         |(after, before): (&f64, &f64)| excess(before) > LOUD && excess(after) <= (1.0 - FURTHER[1]) * excess(before);
