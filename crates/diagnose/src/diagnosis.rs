@@ -324,6 +324,11 @@ pub struct Judged {
 const PREDICTABLE: f64 = 5.0;
 
 impl Diagnosis {
+    /// Whether there is a corrected model beside the nominal one: effects were found, or nominal numbers corrected within their tolerances.
+    pub fn is_corrected(&self) -> bool {
+        !self.effects.is_empty() || !self.within_tolerance.is_empty()
+    }
+
     /// The error that the headline tells.
     pub fn judged(&self) -> Judged {
         let Errors { fit, holdout, windowed, window_s, .. } = &self.error;

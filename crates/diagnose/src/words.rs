@@ -39,9 +39,17 @@ fn opening(diagnosis: &Diagnosis) -> String {
     let judged = diagnosis.judged();
     let (before, whose) = (noise(judged.error.before), whose_words(&judged));
     if diagnosis.verdict == Verdict::NoMismatch {
+        let numbers = if diagnosis.is_corrected() { ", its numbers corrected within their tolerances," } else { "" };
+        let error = match diagnosis.is_corrected() {
+            true => format!(
+                "{} times the noise (1 is perfect; {before} with the nominal numbers)",
+                noise(judged.error.after)
+            ),
+            false => format!("{before} times the noise (1 is perfect)"),
+        };
         return format!(
-            "The scenario “{scenario}” predicts the recording “{recording}” as well as the noise of its sensors allows: \
-             its error {whose} is {before} times the noise (1 is perfect), and no effect of the library improves it significantly."
+            "The scenario “{scenario}”{numbers} predicts the recording “{recording}” as well as the noise of its sensors allows: \
+             its error {whose} is {error}, and no effect of the library improves it significantly."
         );
     }
     let times = format!("wrong by {before} times the noise (1 is perfect)");

@@ -22,7 +22,18 @@ fn diagnosed(truth: &[Effect], tolerance: Tolerance) -> (Diagnosis, String) {
     let at_rest = |built: &diagnose::plant::Built, _: &diagnose::tape::Tape| Start::nominal(built);
     let set = synthesise(with, &swings(), &at_rest, 3).unwrap();
     let nominal = Scenario { tolerance, ..swing() };
-    let diagnosis = diagnose::diagnose(nominal.clone(), &set, &()).unwrap().0;
+    let (diagnosis, evidence) = diagnose::diagnose(nominal.clone(), &set, &()).unwrap();
+    // No headline says in one breath that nothing is missing and that the model is wrong.
+    if diagnosis.verdict == Verdict::NoMismatch {
+        let said = diagnose::words::paragraph(&diagnosis, &evidence);
+        let after = diagnosis.judged().error.after;
+        assert!(after < 1.1 && said.contains(&format!("is {after:.3}")[..5]), "{said}");
+        assert_eq!(
+            said.contains("corrected within their tolerances"),
+            !diagnosis.within_tolerance.is_empty(),
+            "{said}"
+        );
+    }
     let patched = diagnose::patched_toml(&nominal, &diagnosis, &std::env::temp_dir()).unwrap();
     (diagnosis, patched)
 }

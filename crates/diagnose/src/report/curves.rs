@@ -21,7 +21,7 @@ pub(super) fn section(diagnosis: &Diagnosis, evidence: &Evidence) -> String {
     if evidence.curves.is_empty() {
         return String::new();
     }
-    let corrected = !diagnosis.effects.is_empty();
+    let corrected = diagnosis.is_corrected();
     let mut text = String::from(
         "<p>Above: the channel as it was measured and as the models predict it from an initial state estimated on the run. \
          A prediction that leaves the picture has diverged. Below: prediction minus measurement in units of the sensor's noise, \

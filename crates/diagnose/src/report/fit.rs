@@ -97,7 +97,7 @@ fn correlation(evidence: &Evidence) -> String {
 
 /// Errors run by run, and what is left.
 pub(super) fn errors(diagnosis: &Diagnosis, evidence: &Evidence) -> String {
-    let corrected = !diagnosis.effects.is_empty();
+    let corrected = diagnosis.is_corrected();
     let window = short(diagnosis.error.window_s);
     let mut text = format!(
         "<p>RMS of prediction minus measurement in units of noise, over all noisy channels that the model predicts. Free run: one \

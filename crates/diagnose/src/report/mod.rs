@@ -103,7 +103,9 @@ fn tiles(diagnosis: &Diagnosis, evidence: &Evidence) -> Vec<(&'static str, Strin
         tiles.push(("where", first.place.clone(), format!("{} of the mismatch", percent(first.share))));
         tiles.push(("when", when_words(first, evidence), first.condition.clone()));
     }
-    if let Some(test) = evidence.detection.as_ref().filter(|_| diagnosis.verdict == Verdict::NoMismatch) {
+    // It is of the nominal model.
+    let is_shown = diagnosis.verdict == Verdict::NoMismatch && !diagnosis.is_corrected();
+    if let Some(test) = evidence.detection.as_ref().filter(|_| is_shown) {
         let bound =
             format!("noise alone passes {} with {}", crate::number::short(test.bound), percent(test.false_alarm));
         tiles.push(("test for a mismatch", crate::number::short(test.value), bound));
@@ -116,9 +118,9 @@ fn tiles(diagnosis: &Diagnosis, evidence: &Evidence) -> Vec<(&'static str, Strin
     }
     let (error, judged) = (&diagnosis.error, diagnosis.judged());
     let label = if judged.left_out { "error on runs not used" } else { "error on the runs used" };
-    let arrow_of = |e: BeforeAfter, text: fn(f64) -> String| match diagnosis.effects.is_empty() {
-        true => text(e.before),
-        false => format!("{} → {}", text(e.before), text(e.after)),
+    let arrow_of = |e: BeforeAfter, text: fn(f64) -> String| match diagnosis.is_corrected() {
+        true => format!("{} → {}", text(e.before), text(e.after)),
+        false => text(e.before),
     };
     let arrow = |e: BeforeAfter| arrow_of(e, noise);
     let window = crate::number::short(error.window_s);
