@@ -269,6 +269,8 @@ pub fn estimate(runs: &[Chain], ridge: Option<&DMatrix<f64>>, spread: &Spread, s
     let mut may_be_idle = true;
     for _ in 0..steps {
         let growth = now.growth(runs);
+        // What the filter has seen is the largest thing at hand, and is not asked again.
+        now.filtered = Vec::new();
         if may_be_idle {
             // Towards zero each step is shorter than the last: what there is none of is left out at once.
             now = without_idle(now, &growth, &at);
