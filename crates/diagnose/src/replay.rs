@@ -103,6 +103,8 @@ pub struct Leg<'a> {
     pub members: &'a [u32],
     /// Forces beside all laws that act throughout.
     pub push: Option<Push>,
+    /// Commands as they are heard: the tape itself, or means of its commands.
+    pub heard: &'a Tape,
 }
 
 /// A replay of one interval: what sensors with the faults of the model read of some events, and the state at its end.
@@ -119,7 +121,7 @@ pub struct Shot {
 /// Replays an interval for the residuals of some of the tape's events and for its end; events that a late sensor took before it are read at
 /// its begin.
 pub fn shoot(built: &Built, tape: &Tape, start: &Start, leg: Leg<'_>, pace: Pace) -> Result<Shot, DiagnoseError> {
-    let Leg { span, members, push } = leg;
+    let Leg { span, members, push, heard } = leg;
     let sensors = sensors_of(built, tape)?;
     let late = |(i, m): (usize, &u32)| {
         let event = tape.events[*m as usize];
@@ -133,7 +135,7 @@ pub fn shoot(built: &Built, tape: &Tape, start: &Start, leg: Leg<'_>, pace: Pace
         offsets.push(offsets[offsets.len() - 1] + width);
     });
     let mut residuals = vec![f64::NAN; offsets[members.len()]];
-    let mut replay = Replay::new(built, tape, start, span.from, pace);
+    let mut replay = Replay::new(built, heard, start, span.from, pace);
     replay.world.push(push);
     let mut replay = measure(replay, &sensors, &events, |i, event, truth| {
         let value = Value::from(sensors[event.reading as usize].1.apply(truth));

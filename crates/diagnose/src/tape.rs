@@ -38,7 +38,7 @@ pub struct CommandTape {
 
 impl CommandTape {
     /// The instants at which it changes, s.
-    fn changes(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn changes(&self) -> impl Iterator<Item = f64> + '_ {
         let changes = |i: &usize| i.checked_sub(1).is_none_or(|before| self.values[*i] != self.values[before]);
         (0..self.times.len()).filter(changes).map(|i| self.times[i])
     }

@@ -28,6 +28,8 @@ use std::borrow::Borrow;
 pub struct Node {
     /// Channels and products of (S, F, Y) over their residuals.
     pub grams: Vec<(u16, DMatrix<f64>)>,
+    /// Their sum.
+    pub all: DMatrix<f64>,
     /// ∂end/∂s.
     pub a: DMatrix<f64>,
     /// ∂end/∂f.
@@ -87,7 +89,8 @@ struct Seen {
     /// Standard deviation of its force.
     force: DVector<f64>,
     n: Cholesky<f64, Dyn>,
-    taken: DMatrix<f64>,
+    /// HᵀV.
+    hv: DMatrix<f64>,
     t: DMatrix<f64>,
     l: DMatrix<f64>,
     m: DMatrix<f64>,
@@ -105,7 +108,8 @@ fn filter<N: Borrow<Node>>(
     let n_u = nodes.peek().map_or(n_x, |n| n_x + n.borrow().b.ncols());
     let mut l = DMatrix::from_diagonal(prior.start);
     let mut m = DMatrix::zeros(n_x, width);
-    let mut total = DMatrix::zeros(width, width);
+    // What is the sum of a product and its transpose: the product.
+    let [mut total, mut crossed] = [(); 2].map(|()| DMatrix::zeros(width, width));
     let mut log_det = 0.0;
     for ((node, noise), force) in nodes.zip(prior.noise).zip(prior.force) {
         let node = node.borrow();
@@ -115,28 +119,40 @@ fn filter<N: Borrow<Node>>(
         let information = rooted(&rooted(&zz.into_owned(), &l, force).transpose(), &l, force);
         let n = with_unit(&information);
         let hv = rooted(&(zy + zs * &m), &l, force);
-        let taken = n.solve(&hv);
-        let crossed = sy.tr_mul(&m);
-        let vv =
-            gram.view((n_u, n_u), (width, width)) + &crossed + crossed.transpose() + m.tr_mul(&(zs.rows(0, n_x) * &m));
-        total += vv - hv.tr_mul(&taken);
+        let half_v = half(&n, hv.clone());
+        crossed.gemm(1.0, &m.transpose(), &(sy + 0.5 * (zs.rows(0, n_x) * &m)), 1.0);
+        total += gram.view((n_u, n_u), (width, width));
+        total.gemm(-1.0, &half_v.transpose(), &half_v, 1.0);
         log_det += 2.0 * n.l_dirty().diagonal().iter().map(|c| c.ln()).sum::<f64>();
         let t = beside(&(&node.a * &l), &scaled(&node.b, force));
-        let next_m = &node.a * &m + &node.d - &t * &taken;
-        let next_l = root(&n, &t);
-        look(Seen { gram, information, force: force.clone(), n, taken, t, l, m });
+        let half_t = half(&n, t.transpose());
+        let mut next_m = &node.a * &m + &node.d;
+        next_m.gemm(-1.0, &half_t.transpose(), &half_v, 1.0);
+        let next_l = root(half_t);
+        look(Seen { gram, information, force: force.clone(), n, hv, t, l, m });
         (l, m) = (next_l, next_m);
     }
-    Marginal { gram: total, log_det }
+    Marginal { gram: total + &crossed + crossed.transpose(), log_det }
 }
 
 impl Node {
-    /// Products over all channels, each over the factor of its noise.
+    /// How an interval with such products goes on.
+    pub fn new(grams: Vec<(u16, DMatrix<f64>)>, [a, b, d]: [DMatrix<f64>; 3]) -> Self {
+        let side = b.ncols() + a.ncols() + d.ncols();
+        let all = grams.iter().fold(DMatrix::zeros(side, side), |sum, (_, gram)| sum + gram);
+        Self { grams, all, a, b, d }
+    }
+
+    /// The same of channels whose noise is as it is known.
+    pub fn summed(all: DMatrix<f64>, [a, b, d]: [DMatrix<f64>; 3]) -> Self {
+        Self { grams: Vec::new(), all, a, b, d }
+    }
+
+    /// Products over all channels, each over the factor of its noise: most have none.
     fn weighted(&self, noise: &DVector<f64>) -> DMatrix<f64> {
-        let side = self.b.ncols() + self.a.ncols() + self.d.ncols();
-        let mut sum = DMatrix::zeros(side, side);
-        for (channel, gram) in &self.grams {
-            let weight = noise[*channel as usize].powi(-2);
+        let mut sum = self.all.clone();
+        for (channel, gram) in self.grams.iter().filter(|(channel, _)| noise[*channel as usize] != 1.0) {
+            let weight = noise[*channel as usize].powi(-2) - 1.0;
             sum.zip_apply(gram, |s, g| *s += weight * g);
         }
         sum
@@ -166,13 +182,13 @@ pub fn smooth(nodes: &[Node], filtered: &Filtered, theta: &DVector<f64>) -> Smoo
     let mut later = DMatrix::zeros(n_x, n_x);
     let mut out = Smoothed::default();
     for (node, seen) in nodes.iter().zip(seen).rev() {
-        let zeta = -(&seen.taken * &y) - seen.n.solve(&seen.t.tr_mul(&gradient));
+        let zeta = -seen.n.solve(&(&seen.hv * &y + seen.t.tr_mul(&gradient)));
         let (xi, phi) = (zeta.rows(0, n_x), zeta.rows(n_x, n_f));
         let state = &seen.m * &y + &seen.l * xi;
         let force = phi.component_mul(&seen.force);
         let all = DVector::from_iterator(n_u + y.len(), state.iter().chain(&force).chain(&y).copied());
         gradient = seen.gram.rows(0, n_x) * &all + node.a.tr_mul(&gradient);
-        let known = with_unit(&(&seen.information + seen.t.tr_mul(&(&later * &seen.t))));
+        let known = with_unit(&(&seen.information + seen.t.transpose() * (&later * &seen.t)));
         let covariance = known.inverse();
         let spread = covariance.diagonal().rows(n_x, n_f).into_owned();
         let doubt = spread_of(&covariance, &seen.l, &seen.force);
@@ -210,10 +226,10 @@ fn told_by(node: &Node, Seen { gram, force, .. }: &Seen, later: &DMatrix<f64>) -
     let (n_x, n_f) = (node.a.ncols(), force.len());
     let b = scaled(&node.b, force);
     let (la, lb) = (later * &node.a, later * &b);
-    let ss = gram.view((0, 0), (n_x, n_x)) + node.a.tr_mul(&la);
-    let sf = scaled(&gram.view((0, n_x), (n_x, n_f)).into_owned(), force) + node.a.tr_mul(&lb);
+    let ss = gram.view((0, 0), (n_x, n_x)) + node.a.transpose() * la;
+    let sf = scaled(&gram.view((0, n_x), (n_x, n_f)).into_owned(), force) + node.a.transpose() * &lb;
     let own = scaled(&gram.view((n_x, n_x), (n_f, n_f)).into_owned(), force).transpose();
-    let ff = with_unit(&(scaled(&own, force) + b.tr_mul(&lb)));
+    let ff = with_unit(&(scaled(&own, force) + b.transpose() * lb));
     let information = ss - &sf * ff.solve(&sf.transpose());
     0.5 * (&information + information.transpose())
 }
@@ -232,14 +248,14 @@ pub struct Update {
 /// The update by one interval without numbers, its noise that which it was given, from a root of the covariance of its state.
 pub fn update(node: &Node, l: &DMatrix<f64>, force: &DVector<f64>) -> Update {
     let n_u = node.a.ncols() + node.b.ncols();
-    let gram = node.grams.iter().fold(DMatrix::zeros(n_u + 1, n_u + 1), |sum, g| sum + &g.1);
+    let gram = &node.all;
     let zz = gram.view((0, 0), (n_u, n_u)).into_owned();
     let n = with_unit(&rooted(&rooted(&zz, l, force).transpose(), l, force));
     let hv = rooted(&gram.view((0, n_u), (n_u, 1)).into_owned(), l, force);
     let zeta = -n.solve(&hv).column(0);
     let t = beside(&(&node.a * l), &scaled(&node.b, force));
     let (xi, phi) = (zeta.rows(0, l.ncols()), zeta.rows(l.ncols(), force.len()));
-    Update { state: l * xi, force: phi.component_mul(force), root: root(&n, &t) }
+    Update { state: l * xi, force: phi.component_mul(force), root: root(half(&n, t.transpose())) }
 }
 
 /// 1 + X, factored; X is not negative but for round-off, which is scaled away where it counts.
@@ -258,12 +274,17 @@ fn with_unit(x: &DMatrix<f64>) -> Cholesky<f64, Dyn> {
 /// Share of the largest of some products that round-off leaves of the smallest.
 const ROUND_OFF: f64 = 1e-12;
 
-/// A root of T N⁻¹ Tᵀ with as many columns as rows.
-fn root(n: &Cholesky<f64, Dyn>, t: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut half = t.transpose();
-    n.l_dirty().solve_lower_triangular_mut(&mut half);
+/// C⁻¹ X, of which X N⁻¹ X is the square.
+fn half(n: &Cholesky<f64, Dyn>, mut x: DMatrix<f64>) -> DMatrix<f64> {
+    n.l_dirty().solve_lower_triangular_mut(&mut x);
+    x
+}
+
+/// A root of T N⁻¹ Tᵀ with as many columns as rows, from C⁻¹ Tᵀ.
+fn root(half: DMatrix<f64>) -> DMatrix<f64> {
     if half.nrows() < half.ncols() {
-        return half.transpose().resize_horizontally(t.nrows(), 0.0);
+        let rows = half.ncols();
+        return half.transpose().resize_horizontally(rows, 0.0);
     }
     half.qr().r().transpose()
 }
@@ -272,7 +293,7 @@ fn root(n: &Cholesky<f64, Dyn>, t: &DMatrix<f64>) -> DMatrix<f64> {
 fn rooted(x: &DMatrix<f64>, l: &DMatrix<f64>, force: &DVector<f64>) -> DMatrix<f64> {
     let n_x = l.nrows();
     let mut out = x.clone();
-    out.rows_mut(0, n_x).copy_from(&l.tr_mul(&x.rows(0, n_x)));
+    out.rows_mut(0, n_x).copy_from(&(l.transpose() * x.rows(0, n_x)));
     force.iter().enumerate().for_each(|(j, q)| out.row_mut(n_x + j).scale_mut(*q));
     out
 }
@@ -311,7 +332,7 @@ mod tests {
         let (a, b, d) = (draw(STATES, STATES), draw(STATES, FORCES), draw(STATES, NUMBERS + 1));
         let own = |rows: DMatrix<f64>| rows.tr_mul(&rows);
         let grams = vec![(0, own(rows.rows(0, 1).into_owned())), (1, own(rows.rows(1, SAMPLES - 1).into_owned()))];
-        (rows, Node { grams, a, b, d })
+        (rows, Node::new(grams, [a, b, d]))
     }
 
     /// The same problem with all unknowns at once: ρ = J z + Y y with z of unit variance; by sample over the factor of its noise.

@@ -4,6 +4,7 @@
 //! samples whatever the model does, so that no run is ever lost, and the columns are those of the motion that was measured; what remains nonlinear is the
 //! numbers themselves. A step is taken if it lowers the marginal likelihood's −2 log as made linear there, and shortened where it does not.
 
+use super::coarse::Coarse;
 use super::forces::{Force, first_spread, forces};
 use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor, score};
 use super::track::{Base, Bases, Column, Frame, Link, Side, Source, Told, Track, coordinates};
@@ -12,6 +13,7 @@ use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
 use crate::hypothesis::Scale;
 use crate::linear::{Stage, Variation};
+use crate::pace::touches;
 use crate::plant::{Built, Plant};
 use crate::start::Freedom;
 use nalgebra::{DMatrix, DVector};
@@ -23,6 +25,8 @@ use std::sync::Arc;
 pub struct Problem<'a> {
     /// Runs, steps and counts.
     pub stage: Stage<'a>,
+    /// The runs at coarser clocks.
+    pub coarse: Arc<Vec<Coarse>>,
     /// The scenario.
     pub plant: &'a Plant,
     /// Runs that are fitted.
@@ -129,18 +133,26 @@ impl Fitted {
 impl<'a> Problem<'a> {
     /// Some runs of a scenario.
     pub fn new(stage: Stage<'a>, plant: &'a Plant, facts: &Facts, runs: Vec<usize>) -> Self {
+        let forces = forces(facts);
         let mut channels: Vec<String> =
             stage.tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.channel.clone())).collect();
         channels.sort();
         channels.dedup();
         let sampled = stage.tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.times.len()));
         let knots = (sampled.min().unwrap_or(0) / SAMPLES).clamp(*KNOTS.start(), *KNOTS.end());
-        Self { stage, plant, runs, knots, forces: forces(facts), channels }
+        let coarse = coarse(&stage, plant, &forces, (&runs, knots));
+        Self { stage, coarse, plant, runs, knots, forces, channels }
     }
 
     /// What a fit's runs are made linear about and by.
     pub fn frame<'f>(&'f self, of: &'f Fitted) -> Frame<'f> {
-        Frame { stage: &self.stage, built: &of.built, freedoms: &of.freedoms, forces: &self.forces }
+        Frame {
+            stage: &self.stage,
+            coarse: &self.coarse,
+            built: &of.built,
+            freedoms: &of.freedoms,
+            forces: &self.forces,
+        }
     }
 
     /// Variances that are estimated.
@@ -183,10 +195,16 @@ impl<'a> Problem<'a> {
     fn begun_in(&self, knots: usize) -> Result<Fitted, DiagnoseError> {
         let set = EffectSet::default();
         let built = self.plant.build(&[])?;
-        let cut = |run: &usize| Track::cut(&self.stage, (&built, self.forces.len()), *run, knots);
+        let cut = |run: &usize| Track::cut((&self.stage, &self.coarse), (&built, self.forces.len()), *run, knots);
         let tracks: Vec<Track> = self.runs.par_iter().map(cut).collect::<Result<_, _>>()?;
         let freedoms = coordinates(&built, &tracks[0].intervals[0].start);
-        let frame = Frame { stage: &self.stage, built: &built, freedoms: &freedoms, forces: &self.forces };
+        let frame = Frame {
+            stage: &self.stage,
+            coarse: &self.coarse,
+            built: &built,
+            freedoms: &freedoms,
+            forces: &self.forces,
+        };
         let typical = frame.link(tracks[0].run, &tracks[0].intervals[knots / 2]).ok_or_else(|| self.lost())?;
         let step = |w: &[super::track::Interval]| DVector::from_vec(w[1].start.difference(&w[0].start, &freedoms));
         let steps: Vec<DVector<f64>> = tracks.iter().flat_map(|t| t.intervals.windows(2).map(step)).collect();
@@ -271,7 +289,9 @@ impl<'a> Problem<'a> {
 
     /// The same fit on other samples of the same runs.
     pub fn onto(&self, of: &Fitted) -> Result<Fitted, DiagnoseError> {
-        let tracks = of.tracks.iter().map(|t| t.onto(&self.stage, &of.built)).collect::<Result<_, _>>()?;
+        let mut tracks = of.tracks.clone();
+        tracks.iter_mut().flat_map(|t| &mut t.intervals).for_each(|i| i.few = Arc::default());
+        let tracks = tracks.iter().map(|t| t.onto((&self.stage, &self.coarse), &of.built)).collect::<Result<_, _>>()?;
         Ok(Fitted { tracks, links: Vec::new(), steady: Steady::default(), ..of.clone() })
     }
 
@@ -473,8 +493,11 @@ impl<'a> Problem<'a> {
             from.tracks.par_iter().map(|t| frame.carried(t, &from.built)).collect()
         };
         // A sensor that is later than was thought tells of an earlier interval.
-        let told: Vec<Track> =
-            now.tracks.iter().map(|t| t.onto(&self.stage, &now.built)).collect::<Result<_, DiagnoseError>>()?;
+        let told: Vec<Track> = now
+            .tracks
+            .iter()
+            .map(|t| t.onto((&self.stage, &self.coarse), &now.built))
+            .collect::<Result<_, DiagnoseError>>()?;
         let is_told_alike = |(a, b): (&Track, &Track)| {
             a.intervals.iter().zip(&b.intervals).all(|(a, b)| a.members.len() == b.members.len())
         };
@@ -487,7 +510,7 @@ impl<'a> Problem<'a> {
     /// Everything linear about the states of a fit, with a column for each variation.
     pub fn linearise(&self, now: &mut Fitted, variations: &[Variation], reuse: bool) -> Result<Made, DiagnoseError> {
         let frame = self.frame(now);
-        let bases: Option<Vec<Bases>> = now.tracks.par_iter().map(|t| frame.bases(t)).collect();
+        let bases: Option<Vec<Bases>> = now.tracks.par_iter().map(|t| frame.bases(t, variations)).collect();
         let bases = bases.ok_or_else(|| self.lost())?;
         let links = match reuse && now.links.len() == now.tracks.len() {
             true => now.links.clone(),
@@ -542,6 +565,36 @@ impl<'a> Problem<'a> {
         now.tracks.par_iter().zip(chains).map(of).collect()
     }
 }
+
+/// The runs at the coarsest clock at which a rig's derivatives are what they are.
+fn coarse(stage: &Stage<'_>, plant: &Plant, forces: &[Force], (runs, knots): (&[usize], usize)) -> Arc<Vec<Coarse>> {
+    let own = stage.pace.step;
+    let at =
+        |longest: Option<f64>| -> Vec<Coarse> { stage.tapes.iter().map(|t| Coarse::new(t, own, longest)).collect() };
+    let fine = at(None);
+    let tried = || {
+        let built = plant.build(&[]).ok().filter(|built| !touches(built))?;
+        let cut = |(k, run): (usize, &usize)| {
+            let track = Track::cut((stage, &fine), (&built, forces.len()), *run, knots).ok()?;
+            Some((*run, track.intervals[(k + 1) * knots / (TRIED + 1)].clone()))
+        };
+        let some: Vec<_> = runs.iter().take(TRIED).enumerate().filter_map(cut).collect();
+        let freedoms = coordinates(&built, &some.first()?.1.start);
+        let alike = |clock: &Vec<Coarse>| {
+            let frame = |coarse| Frame { stage, coarse, built: &built, freedoms: &freedoms, forces };
+            let (ours, theirs) = (frame(&fine), frame(clock));
+            let d = ours.differs(&theirs, &some);
+            d < ALIKE
+        };
+        COARSER.iter().map(|k| at(Some(k * own))).find(alike)
+    };
+    Arc::new(tried().unwrap_or(fine))
+}
+
+/// Steps of derivatives that are tried, in those of predictions; on so many runs; and share of a derivative that they may move.
+const COARSER: [f64; 3] = [8.0, 4.0, 2.0];
+const TRIED: usize = 3;
+const ALIKE: f64 = 0.02;
 
 /// Whether what the ends of intervals exceed the next ones' states by is lost in the noise.
 fn is_joined(run: &Linear) -> bool {

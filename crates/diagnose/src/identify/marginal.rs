@@ -114,14 +114,10 @@ impl Linear {
                     (0..n_f).for_each(|k| all[(i, n_x + k)] = link.f[(*row, k)]);
                     kept.iter().enumerate().for_each(|(k, c)| all[(i, n_x + n_f + k)] = side.y[(*row, *c)]);
                 }
-                (channel, all.tr_mul(&all))
+                (channel, all.transpose() * all)
             };
-            Node {
-                grams: counts(channels).into_iter().map(|(channel, _)| of_channel(channel)).collect(),
-                a: link.a.clone(),
-                b: link.b.clone(),
-                d: side.d.select_columns(&kept),
-            }
+            let grams = counts(channels).into_iter().map(|(channel, _)| of_channel(channel)).collect();
+            Node::new(grams, [link.a.clone(), link.b.clone(), side.d.select_columns(&kept)])
         };
         let nodes: Vec<Node> = self.links.par_iter().zip(&self.sides).zip(&self.channels).map(node).collect();
         Chain { run: self.run, price: self.price, nodes, start: self.start.clone(), samples: self.samples() }
@@ -148,8 +144,8 @@ impl Linear {
                     all.row_mut(i).unscale_mut(factor);
                 }
             }
-            let gram = all.tr_mul(&all);
-            Node { grams: vec![(0, gram)], a: link.a.clone(), b: link.b.clone(), d: side.d.select_columns(&kept) }
+            let gram = all.transpose() * all;
+            Node::summed(gram, [link.a.clone(), link.b.clone(), side.d.select_columns(&kept)])
         };
         let count = self.links.len();
         let few = move |from: usize| (from..count.min(from + AT_A_TIME)).into_par_iter().map(node).collect::<Vec<_>>();
@@ -536,10 +532,11 @@ mod tests {
 
     /// The same with one interval that nothing follows.
     fn with_a_bump(mut chain: Chain) -> Chain {
-        let all = &mut chain.nodes[INTERVALS / 2].grams[0].1;
-        let last = all.ncols() - 1;
+        let node = &mut chain.nodes[INTERVALS / 2];
+        let last = node.all.ncols() - 1;
         // Residuals that no state and no force makes.
-        all[(last, last)] += 1e8;
+        node.all[(last, last)] += 1e8;
+        node.grams[0].1[(last, last)] += 1e8;
         chain
     }
 

@@ -5,6 +5,7 @@
 //! much of it each interval stands for itself. [`chain`] eliminates states and forces along the run exactly, [`track`] makes a run linear.
 
 pub mod chain;
+pub mod coarse;
 pub mod fit;
 pub mod forces;
 pub mod marginal;

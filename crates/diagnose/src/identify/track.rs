@@ -1,6 +1,7 @@
 //! A run cut at knots, simulated interval by interval from states of their own, and made linear.
 
 use super::chain::{self, Node, Smoothed};
+use super::coarse::{Coarse, Few};
 use super::forces::{Force, has_memory, pushing};
 use crate::error::DiagnoseError;
 use crate::guess::guess;
@@ -11,6 +12,7 @@ use crate::start::{Freedom, Start, freedoms};
 use crate::tape::Tape;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// An interval between two knots.
 #[derive(Clone, Debug)]
@@ -19,6 +21,8 @@ pub struct Interval {
     pub span: Span,
     /// The events of the tape that tell of it.
     pub members: Vec<u32>,
+    /// Those at which derivatives are taken.
+    pub few: Arc<Few>,
     /// The state at its begin that is believed at present.
     pub start: Start,
     /// The unknown forces that push it from there, by their number.
@@ -33,8 +37,8 @@ pub type Base = (DVector<f64>, Start);
 pub struct Bases {
     /// For residuals.
     pub exact: Vec<Base>,
-    /// For difference quotients.
-    pub glanced: Vec<Base>,
+    /// For difference quotients of models without corners, at few events.
+    smooth: Vec<Base>,
 }
 
 /// Derivatives of an interval by its state and by forces.
@@ -73,6 +77,8 @@ pub struct Track {
 pub struct Frame<'a> {
     /// Runs, steps and counts.
     pub stage: &'a Stage<'a>,
+    /// The runs at coarser clocks.
+    pub coarse: &'a [Coarse],
     /// The model at present.
     pub built: &'a Built,
     /// Coordinates of a state.
@@ -89,7 +95,7 @@ pub fn coordinates(built: &Built, start: &Start) -> Vec<Freedom> {
 impl Interval {
     /// Its begin up to an instant, of which nothing is read.
     fn until(&self, to: f64) -> Self {
-        Self { span: Span { to, ..self.span }, members: Vec::new(), ..self.clone() }
+        Self { span: Span { to, ..self.span }, members: Vec::new(), few: Arc::default(), ..self.clone() }
     }
 
     /// The same with one unknown force larger by so much.
@@ -103,7 +109,7 @@ impl Interval {
 impl Track {
     /// Cuts a run into so many intervals of one length, each with the state that its samples suggest.
     pub fn cut(
-        stage: &Stage<'_>,
+        (stage, coarse): (&Stage<'_>, &[Coarse]),
         (built, forces): (&Built, usize),
         run: usize,
         count: usize,
@@ -119,18 +125,24 @@ impl Track {
         let members = told_by(built, tape, &instants)?;
         let interval = |(w, members): (&[f64], Vec<u32>)| {
             let span = Span { from: w[0], to: w[1] };
-            Interval { span, members, start: guess(built, tape, w[0]), force: DVector::zeros(forces) }
+            let few = Arc::new(coarse[run].few(tape, &members));
+            Interval { span, members, few, start: guess(built, tape, w[0]), force: DVector::zeros(forces) }
         };
         Ok(Self { run, intervals: instants.windows(2).zip(members).map(interval).collect() })
     }
 
     /// The same intervals with the events of another tape of the run.
-    pub fn onto(&self, stage: &Stage<'_>, built: &Built) -> Result<Self, DiagnoseError> {
+    pub fn onto(&self, (stage, coarse): (&Stage<'_>, &[Coarse]), built: &Built) -> Result<Self, DiagnoseError> {
         let begins = self.intervals.iter().map(|i| i.span.from);
         let instants: Vec<f64> = begins.chain(self.intervals.last().map(|i| i.span.to)).collect();
         let mut onto = self.clone();
         let members = told_by(built, &stage.tapes[self.run], &instants)?;
-        onto.intervals.iter_mut().zip(members).for_each(|(interval, own)| interval.members = own);
+        for (interval, own) in onto.intervals.iter_mut().zip(members) {
+            if interval.members != own || interval.few.members.is_empty() {
+                interval.few = Arc::new(coarse[self.run].few(&stage.tapes[self.run], &own));
+                interval.members = own;
+            }
+        }
         Ok(onto)
     }
 }
@@ -142,18 +154,31 @@ impl Frame<'_> {
     }
 
     fn shoot(&self, built: &Built, run: usize, interval: &Interval, start: &Start) -> Option<Base> {
-        self.shoot_at(self.stage.pace, built, (run, interval), start)
+        let told = (interval.members.as_slice(), &self.stage.tapes[run]);
+        self.shoot_at(self.stage.pace, built, (run, interval), start, told)
     }
 
-    /// The same at the pace of derivatives: models without corners by the midpoint rule.
+    /// The same as derivatives are taken: models without corners by the midpoint rule, at few events.
     fn glance(&self, built: &Built, run: usize, interval: &Interval, start: &Start) -> Option<Base> {
-        self.shoot_at(Pace { midpoint: true, ..self.stage.pace }, built, (run, interval), start)
+        if !built.model.is_smooth() {
+            return self.shoot(built, run, interval, start);
+        }
+        let Coarse { heard, longest, .. } = &self.coarse[run];
+        let pace = Pace { step: *longest, free: self.stage.pace.free.max(*longest), midpoint: true };
+        self.shoot_at(pace, built, (run, interval), start, (&interval.few.members, heard))
     }
 
-    fn shoot_at(&self, pace: Pace, built: &Built, (run, interval): (usize, &Interval), start: &Start) -> Option<Base> {
+    fn shoot_at(
+        &self,
+        pace: Pace,
+        built: &Built,
+        (run, interval): (usize, &Interval),
+        start: &Start,
+        (members, heard): (&[u32], &Tape),
+    ) -> Option<Base> {
         let tape = &self.stage.tapes[run];
         let push = pushing(self.forces, &interval.force);
-        let found = shoot(built, tape, start, Leg { span: interval.span, members: &interval.members, push }, pace);
+        let found = shoot(built, tape, start, Leg { span: interval.span, members, push, heard }, pace);
         let work = found.as_ref().map_or_else(|_| sim::Work::default(), |s| s.work);
         self.stage.work.add(interval.span.to - interval.span.from, built.model.owners.len(), &work);
         let Shot { residuals, end, .. } = found.ok()?;
@@ -163,24 +188,43 @@ impl Frame<'_> {
     /// Derivatives of an interval by its state and by forces; none where its replay left the range of numbers.
     pub fn link(&self, run: usize, interval: &Interval) -> Option<Link> {
         let n_x = self.freedoms.len();
-        let (r, end) = &self.glance(self.built, run, interval, &interval.start)?;
-        let column = |moved: Option<Base>, step: f64| match moved {
-            Some((q, e)) => ((q - r) / step, DVector::from_vec(e.difference(end, self.freedoms)) / step),
-            None => (DVector::zeros(r.len()), DVector::zeros(n_x)),
+        let glance = |interval: &Interval, start: &Start| self.glance(self.built, run, interval, start);
+        let (r, end) = &glance(interval, &interval.start)?;
+        let column = |moved: Option<Base>, step: f64| {
+            let few = moved.as_ref().map_or_else(|| DVector::zeros(r.len()), |(q, _)| (q - r) / step);
+            let by_end = |(_, e): &Base| DVector::from_vec(e.difference(end, self.freedoms)) / step;
+            (told(self.built, interval, few), moved.as_ref().map_or_else(|| DVector::zeros(n_x), by_end))
         };
         let by_state = |freedom: &Freedom| {
             let step = freedom.first_step();
-            column(self.glance(self.built, run, interval, &interval.start.moved(*freedom, step)), step)
+            column(glance(interval, &interval.start.moved(*freedom, step)), step)
         };
         let by_force = |j: usize| {
             let step = self.forces[j].size;
-            column(self.glance(self.built, run, &interval.pushed(j, step), &interval.start), step)
+            column(glance(&interval.pushed(j, step), &interval.start), step)
         };
         let states: Vec<_> = self.freedoms.par_iter().map(by_state).collect();
         let forces: Vec<_> = (0..self.forces.len()).into_par_iter().map(by_force).collect();
-        let (s, a) = matrices(&states, r.len(), n_x);
-        let (f, b) = matrices(&forces, r.len(), n_x);
+        let rows = states.first().map_or(0, |c| c.0.len());
+        let (s, a) = matrices(&states, rows, n_x);
+        let (f, b) = matrices(&forces, rows, n_x);
         Some(Link { s, f, a, b })
+    }
+
+    /// Largest share of a derivative of some intervals by which those at a coarser clock differ from these.
+    pub fn differs(&self, coarser: &Self, of: &[(usize, Interval)]) -> f64 {
+        let differ = |(run, interval): &(usize, Interval)| {
+            let read = |frame: &Self| {
+                let few = Arc::new(frame.coarse[*run].few(&self.stage.tapes[*run], &interval.members));
+                frame.link(*run, &Interval { few, ..interval.clone() })
+            };
+            let Some((a, b)) = read(self).zip(read(coarser)) else { return f64::INFINITY };
+            [(&a.s, &b.s), (&a.f, &b.f), (&a.a, &b.a), (&a.b, &b.b)]
+                .map(share_of_change)
+                .into_iter()
+                .fold(0.0, f64::max)
+        };
+        of.par_iter().map(differ).reduce(|| 0.0, f64::max)
     }
 
     /// How rates answer to unknown forces at once, in a model that an interval may not be of: ∂v/∂f over a short while, a row a rate.
@@ -208,18 +252,18 @@ impl Frame<'_> {
     fn put_columns(&self, track: &Track, bases: &Bases, variation: &Variation, mut put: impl FnMut(Column)) {
         let brings = has_memory(&variation.built, self.built);
         let mut carried: Option<Start> = None;
-        let bases = if variation.built.model.is_smooth() { &bases.glanced } else { &bases.exact };
+        let bases = if variation.built.model.is_smooth() { &bases.smooth } else { &bases.exact };
         for (interval, (r, end)) in track.intervals.iter().zip(bases) {
             let mut start = interval.start.fitted_to(&variation.built);
             if let Some(before) = carried.as_ref().filter(|_| brings) {
                 start.remember(before, self.built);
             }
             let Some((q, e)) = self.glance(&variation.built, track.run, interval, &start) else {
-                put((DVector::zeros(r.len()), DVector::zeros(self.freedoms.len())));
+                put((told(&variation.built, interval, DVector::zeros(r.len())), DVector::zeros(self.freedoms.len())));
                 continue;
             };
             let by = DVector::from_vec(e.difference(end, self.freedoms)) / variation.step;
-            put(((q - r) / variation.step, by));
+            put((told(&variation.built, interval, (q - r) / variation.step), by));
             carried = Some(e);
         }
     }
@@ -246,14 +290,17 @@ impl Frame<'_> {
         track.intervals.par_iter().map(|i| self.shoot(self.built, track.run, i, &i.start)).collect()
     }
 
-    /// The same as derivatives are taken too, and where each ends; none where a replay left the range of numbers.
-    pub fn bases(&self, track: &Track) -> Option<Bases> {
+    /// The same as derivatives by some variations are taken too, and where each ends; none where a replay left the range of numbers.
+    pub fn bases(&self, track: &Track, variations: &[Variation]) -> Option<Bases> {
         let exact = self.exact(track)?;
-        let glanced: Option<Vec<Base>> = match self.built.model.is_smooth() {
-            true => track.intervals.par_iter().map(|i| self.glance(self.built, track.run, i, &i.start)).collect(),
-            false => Some(exact.clone()),
+        let is_smooth = |v: &Variation| v.built.model.is_smooth();
+        let glance = |i: &Interval| self.glance(self.built, track.run, i, &i.start);
+        let smooth = if variations.iter().any(is_smooth) {
+            track.intervals.par_iter().map(glance).collect()
+        } else {
+            Some(Vec::new())
         };
-        Some(Bases { exact, glanced: glanced? })
+        Some(Bases { exact, smooth: smooth? })
     }
 
     /// Follows a run from its first state by what its samples say (extended Kalman filter, each interval about its own estimate), and leaves the states there; the derivatives
@@ -394,7 +441,7 @@ impl Frame<'_> {
             vec![first, second]
         };
         let intervals = track.intervals.iter().zip(which).flat_map(half).collect();
-        Track { run: track.run, intervals }.onto(self.stage, self.built)
+        Track { run: track.run, intervals }.onto((self.stage, self.coarse), self.built)
     }
 
     /// A share of the way from one course of a run to another one.
@@ -469,6 +516,17 @@ struct Passed {
     root: DMatrix<f64>,
 }
 
+/// Values of all scalars of an interval from those that a model was read at.
+fn told(built: &Built, interval: &Interval, read: DVector<f64>) -> DVector<f64> {
+    if built.model.is_smooth() { interval.few.expanded(&read) } else { read }
+}
+
+/// Largest share of a column's length by which another one differs from it.
+fn share_of_change((a, b): (&DMatrix<f64>, &DMatrix<f64>)) -> f64 {
+    let share = |k: usize| (a.column(k) - b.column(k)).norm() / a.column(k).norm().max(f64::MIN_POSITIVE.sqrt());
+    (0..a.ncols()).map(share).fold(0.0, f64::max)
+}
+
 fn matrices(columns: &[Column], rows: usize, n_x: usize) -> (DMatrix<f64>, DMatrix<f64>) {
     let of = |rows: usize, pick: fn(&Column) -> &DVector<f64>| {
         DMatrix::from_fn(rows, columns.len(), |i, j| pick(&columns[j])[i])
@@ -485,5 +543,5 @@ fn alone(link: &Link, (r, off, force): (&DVector<f64>, &DVector<f64>, &DVector<f
     all.columns_mut(n_x, n_f).copy_from(&link.f);
     all.column_mut(n_x + n_f).copy_from(&(r + &link.s * off - &link.f * force));
     all.column_iter_mut().for_each(|mut column| column.component_div_assign(factors));
-    Node { grams: vec![(0, all.tr_mul(&all))], a: link.a.clone(), b: link.b.clone(), d: DMatrix::zeros(n_x, 1) }
+    Node::summed(all.transpose() * all, [link.a.clone(), link.b.clone(), DMatrix::zeros(n_x, 1)])
 }

@@ -66,9 +66,10 @@ impl<'a> Regression<'a> {
         let of_run = |run: &Linear| {
             let of_interval = |i: usize| {
                 let f = &run.links[i].f;
-                let mut gram = f.tr_mul(f);
+                let transposed = f.transpose();
+                let mut gram = &transposed * f;
                 (0..gram.nrows()).for_each(|k| gram[(k, k)] += force[k].powi(-2).min(LARGEST));
-                let told = f.tr_mul(&run.sides[i].y.columns(first, columns));
+                let told = transposed * run.sides[i].y.columns(first, columns);
                 gram.cholesky().map_or_else(|| told.clone() * 0.0, |c| c.solve(&told))
             };
             (0..run.sides.len()).into_par_iter().map(of_interval).collect::<Vec<_>>()

@@ -1,0 +1,183 @@
+//! Difference quotients at a coarser clock.
+//!
+//! Sensors and commands of a rig tick far more often than its motion bends: a derivative of what an interval reads is as smooth as that motion. It is taken
+//! at every k-th instant at which anything is read, k a power of two, commands replaced by their means between these, and told for the others
+//! by cubics through the nearest four (Lagrange). What is linear in commands feels their mean; what switches keeps its instants.
+//! How large k may be is tried on the rig itself.
+
+use crate::replay::SAME;
+use crate::tape::{CommandTape, Tape};
+use nalgebra::DVector;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Instants that an interval has at least.
+const FEWEST: usize = 8;
+/// Changes of a command by cell from which on it is a course and not a switch.
+const DENSE: f64 = 0.5;
+
+/// A run heard and read at a coarser clock.
+#[derive(Clone, Debug)]
+pub struct Coarse {
+    /// Its commands, each cell's mean.
+    pub heard: Arc<Tape>,
+    /// Longest step, s.
+    pub longest: f64,
+    /// Instants at which anything is read, s.
+    instants: Vec<f64>,
+    /// Largest k, as a power of two.
+    most: u32,
+}
+
+/// The events of an interval at which derivatives are taken.
+#[derive(Clone, Debug, Default)]
+pub struct Few {
+    /// Those events.
+    pub members: Vec<u32>,
+    /// Where the scalars of each of these begin, and last their number.
+    begins: Vec<u32>,
+    /// Scalars of every event of the interval, and which of the few tell of it by which weights; nothing where all are kept.
+    told: Vec<(u16, [u16; 4], [f32; 4])>,
+}
+
+impl Coarse {
+    /// Of a run, with steps up to a longest; none: as it is, in steps of `own`.
+    pub fn new(tape: &Tape, own: f64, longest: Option<f64>) -> Self {
+        let mut instants: Vec<f64> = tape.events.iter().map(|e| e.time).collect();
+        instants.dedup_by(|b, a| *b - *a <= SAME);
+        let Some(longest) = longest else {
+            return Self { heard: Arc::new(silent(tape, tape.commands.clone())), longest: own, instants, most: 0 };
+        };
+        let mut gaps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
+        gaps.sort_by(f64::total_cmp);
+        let usual = gaps.get(gaps.len() / 2).copied().unwrap_or(longest);
+        let most = (longest / usual + SAME).max(1.0).log2().floor() as u32;
+        let heard = Arc::new(heard(tape, &cells(&instants, 1 << most, longest)));
+        Self { heard, longest, instants, most }
+    }
+
+    /// Which events of an interval are kept, as few as it bears.
+    pub fn few(&self, tape: &Tape, members: &[u32]) -> Few {
+        let at = |m: &u32| self.instants.partition_point(|t| *t < tape.events[*m as usize].time - SAME);
+        let of: Vec<usize> = members.iter().map(at).collect();
+        let [first, last] = [of.iter().min(), of.iter().max()].map(|x| x.copied().unwrap_or(0));
+        let clock = (1..=self.most).rev().find(|c| (last - first) >> c >= FEWEST).unwrap_or(0);
+        if clock == 0 {
+            return Few { members: members.to_vec(), ..Few::default() };
+        }
+        let mut by_reading: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (i, m) in members.iter().enumerate() {
+            by_reading.entry(tape.events[*m as usize].reading).or_default().push(i);
+        }
+        let mut is_kept = vec![false; members.len()];
+        for own in by_reading.values() {
+            let is_sparse = own.len() >> clock < FEWEST;
+            own.iter().filter(|i| is_sparse || of[**i].is_multiple_of(1 << clock)).for_each(|i| is_kept[*i] = true);
+            [own.first(), own.last()].into_iter().flatten().for_each(|i| is_kept[*i] = true);
+        }
+        let place: Vec<usize> = is_kept
+            .iter()
+            .scan(0, |n, kept| {
+                let at = *n;
+                *n += usize::from(*kept);
+                Some(at)
+            })
+            .collect();
+        let mut told = vec![(0, [0; 4], [0.0; 4]); members.len()];
+        let time = |i: usize| tape.events[members[i] as usize].time;
+        for (reading, own) in &by_reading {
+            let width = tape.readings[*reading as usize].width() as u16;
+            let kept: Vec<usize> = own.iter().copied().filter(|i| is_kept[*i]).collect();
+            for i in own {
+                let after = kept.partition_point(|k| time(*k) < time(*i));
+                let from = after.saturating_sub(2).min(kept.len().saturating_sub(4));
+                let near = &kept[from..kept.len().min(from + 4)];
+                let (mut places, mut weights) = ([0; 4], [0.0; 4]);
+                for (k, (a, weight)) in near.iter().zip(&mut weights).enumerate() {
+                    places[k] = place[*a] as u16;
+                    let others = near.iter().filter(|b| *b != a);
+                    *weight = others.map(|b| (time(*i) - time(*b)) / (time(*a) - time(*b))).product::<f64>() as f32;
+                }
+                told[*i] = (width, places, weights);
+            }
+        }
+        let kept: Vec<u32> = members.iter().zip(&is_kept).filter(|(_, kept)| **kept).map(|(m, _)| *m).collect();
+        let mut begins = vec![0];
+        for m in &kept {
+            begins.push(
+                begins[begins.len() - 1] + tape.readings[tape.events[*m as usize].reading as usize].width() as u32,
+            );
+        }
+        Few { members: kept, begins, told }
+    }
+}
+
+impl Few {
+    /// Values of all scalars of an interval from those of the few events.
+    pub fn expanded(&self, few: &DVector<f64>) -> DVector<f64> {
+        if self.told.is_empty() {
+            return few.clone();
+        }
+        let count = self.told.iter().map(|t| t.0 as usize).sum();
+        let mut out = DVector::zeros(count);
+        let mut row = 0;
+        for (width, places, weights) in &self.told {
+            for axis in 0..*width as usize {
+                let of = |(place, weight): (&u16, &f32)| {
+                    f64::from(*weight) * few[self.begins[*place as usize] as usize + axis]
+                };
+                out[row] = places.iter().zip(weights).filter(|(_, w)| **w != 0.0).map(of).sum();
+                row += 1;
+            }
+        }
+        out
+    }
+}
+
+/// Begins of cells between every k-th instant, none longer than that.
+fn cells(instants: &[f64], k: usize, longest: f64) -> Vec<f64> {
+    let kept: Vec<f64> = instants.iter().copied().step_by(k).collect();
+    let within = |w: &[f64]| {
+        let parts = ((w[1] - w[0]) / longest - 1e-6).ceil().max(1.0);
+        let [from, length] = [w[0], (w[1] - w[0]) / parts];
+        (0..parts as usize).map(move |i| from + i as f64 * length).collect::<Vec<_>>()
+    };
+    kept.windows(2).flat_map(within).chain(kept.last().copied()).collect()
+}
+
+/// What is heard of a run's commands in such cells.
+fn heard(tape: &Tape, cells: &[f64]) -> Tape {
+    let of = |command: &CommandTape| {
+        let changes = command.changes().count();
+        if (changes as f64) < DENSE * cells.len() as f64 {
+            return command.clone();
+        }
+        let values = cells.windows(2).map(|w| command.mean(w[0], w[1]));
+        let values = values.chain(cells.last().map(|t| command.mean(*t, *t))).collect();
+        CommandTape { times: cells.to_vec(), values, ..*command }
+    };
+    silent(tape, tape.commands.iter().map(of).collect())
+}
+
+/// A run of which nothing is read.
+fn silent(tape: &Tape, commands: Vec<CommandTape>) -> Tape {
+    let heard = Tape::assemble((&tape.file, tape.role), commands, Vec::new());
+    Tape { index: tape.index, span: tape.span, ..heard }
+}
+
+impl CommandTape {
+    /// Its mean between two instants; nothing before its first tick.
+    fn mean(&self, from: f64, to: f64) -> f64 {
+        let at = |t: f64| self.times.partition_point(|x| *x <= t + SAME);
+        let held = |i: usize| i.checked_sub(1).map_or(0.0, |i| self.values[i]);
+        if to - from <= SAME {
+            return held(at(from));
+        }
+        let (mut sum, mut now) = (0.0, from);
+        for i in at(from)..at(to) {
+            sum += held(i) * (self.times[i].min(to) - now);
+            now = self.times[i].min(to);
+        }
+        (sum + held(at(now)) * (to - now)) / (to - from)
+    }
+}
