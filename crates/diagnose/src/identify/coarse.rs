@@ -5,6 +5,11 @@
 //! by cubics through the nearest four (Lagrange). What is linear in commands feels their mean; what switches keeps its instants.
 //! How large k may be is tried on the rig itself.
 
+use super::forces::Force;
+use super::track::{Frame, Track, coordinates};
+use crate::linear::Stage;
+use crate::pace::touches;
+use crate::plant::Plant;
 use crate::replay::SAME;
 use crate::tape::{CommandTape, Tape};
 use nalgebra::DVector;
@@ -15,6 +20,11 @@ use std::sync::Arc;
 const FEWEST: usize = 8;
 /// Changes of a command by cell from which on it is a course and not a switch.
 const DENSE: f64 = 0.5;
+
+/// Steps of derivatives that are tried, in those of predictions; in an interval of so many runs; and share of a derivative that they may move.
+const COARSER: [f64; 3] = [8.0, 4.0, 2.0];
+const TRIED: usize = 3;
+const ALIKE: f64 = 0.02;
 
 /// A run heard and read at a coarser clock.
 #[derive(Clone, Debug)]
@@ -38,6 +48,33 @@ pub struct Few {
     begins: Vec<u32>,
     /// Scalars of every event of the interval, and which of the few tell of it by which weights; nothing where all are kept.
     told: Vec<(u16, [u16; 4], [f32; 4])>,
+}
+
+/// All runs at the coarsest clock at which a rig's derivatives are what they are; as they were recorded where parts may touch.
+pub fn of_rig(
+    stage: &Stage<'_>,
+    (plant, forces): (&Plant, &[Force]),
+    (runs, knots): (&[usize], usize),
+) -> Arc<Vec<Coarse>> {
+    let own = stage.pace.step;
+    let at = |longest| -> Vec<Coarse> { stage.tapes.iter().map(|t| Coarse::new(t, own, longest)).collect() };
+    let fine = at(None);
+    let tried = || {
+        let built = plant.build(&[]).ok().filter(|built| built.model.is_smooth() && !touches(built))?;
+        let cut = |(k, run): (usize, &usize)| {
+            let track = Track::cut((stage, &fine), (&built, forces.len()), *run, knots).ok()?;
+            Some((*run, track.intervals[(k + 1) * knots / (TRIED + 1)].clone()))
+        };
+        let some: Vec<_> = runs.iter().take(TRIED).enumerate().filter_map(cut).collect();
+        let freedoms = coordinates(&built, &some.first()?.1.start);
+        let alike = |clock: &Vec<Coarse>| {
+            let frame = |coarse| Frame { stage, coarse, built: &built, freedoms: &freedoms, forces };
+            let (ours, theirs) = (frame(&fine), frame(clock));
+            ours.differs(&theirs, &some) < ALIKE
+        };
+        COARSER.iter().map(|k| at(Some(k * own))).find(alike)
+    };
+    Arc::new(tried().unwrap_or(fine))
 }
 
 impl Coarse {
@@ -75,18 +112,27 @@ impl Coarse {
             own.iter().filter(|i| is_sparse || of[**i].is_multiple_of(1 << clock)).for_each(|i| is_kept[*i] = true);
             [own.first(), own.last()].into_iter().flatten().for_each(|i| is_kept[*i] = true);
         }
-        let place: Vec<usize> = is_kept
-            .iter()
-            .scan(0, |n, kept| {
-                let at = *n;
-                *n += usize::from(*kept);
-                Some(at)
-            })
-            .collect();
-        let mut told = vec![(0, [0; 4], [0.0; 4]); members.len()];
+        Few::new(tape, (members, &is_kept), by_reading.values())
+    }
+}
+
+impl Few {
+    /// Of the events of an interval those that are kept; `readings`: which of them are of one reading, in order.
+    fn new<'a>(
+        tape: &Tape,
+        (members, is_kept): (&[u32], &[bool]),
+        readings: impl Iterator<Item = &'a Vec<usize>>,
+    ) -> Self {
+        let width = |m: u32| tape.readings[tape.events[m as usize].reading as usize].width();
         let time = |i: usize| tape.events[members[i] as usize].time;
-        for (reading, own) in &by_reading {
-            let width = tape.readings[*reading as usize].width() as u16;
+        let (mut few, mut begins, mut place) = (Vec::new(), vec![0], vec![0; members.len()]);
+        for (i, m) in members.iter().enumerate().filter(|(i, _)| is_kept[*i]) {
+            place[i] = few.len();
+            few.push(*m);
+            begins.push(begins[begins.len() - 1] + width(*m) as u32);
+        }
+        let mut told = vec![(0, [0; 4], [0.0; 4]); members.len()];
+        for own in readings {
             let kept: Vec<usize> = own.iter().copied().filter(|i| is_kept[*i]).collect();
             for i in own {
                 let after = kept.partition_point(|k| time(*k) < time(*i));
@@ -98,21 +144,12 @@ impl Coarse {
                     let others = near.iter().filter(|b| *b != a);
                     *weight = others.map(|b| (time(*i) - time(*b)) / (time(*a) - time(*b))).product::<f64>() as f32;
                 }
-                told[*i] = (width, places, weights);
+                told[*i] = (width(members[*i]) as u16, places, weights);
             }
         }
-        let kept: Vec<u32> = members.iter().zip(&is_kept).filter(|(_, kept)| **kept).map(|(m, _)| *m).collect();
-        let mut begins = vec![0];
-        for m in &kept {
-            begins.push(
-                begins[begins.len() - 1] + tape.readings[tape.events[*m as usize].reading as usize].width() as u32,
-            );
-        }
-        Few { members: kept, begins, told }
+        Self { members: few, begins, told }
     }
-}
 
-impl Few {
     /// Values of all scalars of an interval from those of the few events.
     pub fn expanded(&self, few: &DVector<f64>) -> DVector<f64> {
         if self.told.is_empty() {
@@ -179,5 +216,82 @@ impl CommandTape {
             now = self.times[i].min(to);
         }
         (sum + held(at(now)) * (to - now)) / (to - from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reading::{Reading, Value};
+    use crate::tape::Commanded;
+    use record::Role;
+    use scenario::measure::Quantity;
+    use spatial::Vec3;
+
+    /// A joint and a body's place read every 10 ms for a second, the body's only at every second tick; a command that is a course, and one that switches.
+    fn tape() -> Tape {
+        let reading = |channel: &str, every: usize, axes: usize| {
+            let times: Vec<f64> = (0..=100).step_by(every).map(|i| 0.01 * i as f64).collect();
+            let values = times.iter().map(|_| Value::Vector(Vec3::zeros())).collect();
+            let quantity = Quantity::JointPosition(0);
+            Reading {
+                channel: channel.to_owned(),
+                quantity,
+                axes: (0..axes).collect(),
+                sigma: 1.0,
+                times,
+                values,
+                late_s: 0.0,
+            }
+        };
+        let command = |actuator, changes: usize, value: fn(f64) -> f64| {
+            let times: Vec<f64> = (0..changes).map(|i| i as f64 / changes as f64).collect();
+            CommandTape { actuator, what: Commanded::Effort, values: times.iter().map(|t| value(*t)).collect(), times }
+        };
+        let commands = vec![command(0, 500, |t| t), command(1, 2, |t| if t > 0.4 { 1.0 } else { -1.0 })];
+        Tape::assemble(("run-01.csv", Role::Fit), commands, vec![reading("a", 1, 1), reading("b", 2, 3)])
+    }
+
+    #[test]
+    fn what_few_events_tell_of_a_cubic_is_that_cubic() {
+        let tape = tape();
+        let coarse = Coarse::new(&tape, 0.002, Some(0.04));
+        let members: Vec<u32> = (0..tape.events.len() as u32).collect();
+        let few = coarse.few(&tape, &members);
+        assert!(few.members.len() < members.len() / 2, "{} of {}", few.members.len(), members.len());
+        let cubic = |event: &crate::tape::Event| {
+            let t = event.time;
+            let width = tape.readings[event.reading as usize].width();
+            (0..width)
+                .map(move |axis| 1.0 + (2.0 + axis as f64) * t - 3.0 * t * t + 0.5 * t * t * t)
+                .collect::<Vec<_>>()
+        };
+        let of =
+            |members: &[u32]| -> Vec<f64> { members.iter().flat_map(|m| cubic(&tape.events[*m as usize])).collect() };
+        let told = few.expanded(&DVector::from_vec(of(&few.members)));
+        assert!((told - DVector::from_vec(of(&members))).amax() < 1e-6, "weights have single precision");
+    }
+
+    #[test]
+    fn a_short_interval_keeps_all_its_events() {
+        let tape = tape();
+        let members: Vec<u32> = (20..34).collect();
+        let few = Coarse::new(&tape, 0.002, Some(0.04)).few(&tape, &members);
+        assert_eq!(few.members, members);
+        let read = DVector::from_fn(5, |i, _| i as f64);
+        assert_eq!(few.expanded(&read), read);
+    }
+
+    #[test]
+    fn a_course_is_heard_as_its_means_and_a_switch_as_it_is() {
+        let tape = tape();
+        let coarse = Coarse::new(&tape, 0.002, Some(0.04));
+        let [course, switch] = &coarse.heard.commands[..] else { panic!("two commands") };
+        assert_eq!((switch.times.len(), course.times.len()), (2, 26), "{:?}", course.times);
+        // The means of a ramp that climbs in steps of 2 ms, each told from its begin.
+        for (t, mean) in course.times.iter().zip(&course.values).take(25) {
+            assert!((mean - (t + 0.02 - 0.001)).abs() < 1e-9, "{t}: {mean}");
+        }
+        assert_eq!(coarse.heard.span, tape.span);
     }
 }

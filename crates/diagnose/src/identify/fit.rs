@@ -4,16 +4,15 @@
 //! samples whatever the model does, so that no run is ever lost, and the columns are those of the motion that was measured; what remains nonlinear is the
 //! numbers themselves. A step is taken if it lowers the marginal likelihood's −2 log as made linear there, and shortened where it does not.
 
-use super::coarse::Coarse;
+use super::coarse::{self, Coarse};
 use super::forces::{Force, first_spread, forces};
 use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor, score};
-use super::track::{Base, Bases, Column, Frame, Link, Side, Source, Told, Track, coordinates};
+use super::track::{Bases, Column, Frame, Link, Side, Source, Told, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
 use crate::hypothesis::Scale;
 use crate::linear::{Stage, Variation};
-use crate::pace::touches;
 use crate::plant::{Built, Plant};
 use crate::start::Freedom;
 use nalgebra::{DMatrix, DVector};
@@ -104,17 +103,10 @@ const NEARER: f64 = 0.5;
 /// Steps of the spread: from afar, and near.
 const STEPS: [usize; 2] = [12, 6];
 /// Iterations of states and spread of a model without numbers.
-const SETTLING: usize = 3;
+pub(super) const SETTLING: usize = 3;
 /// Iterations until states follow each other, and what they may miss each other by, units of noise: a free run makes much of it.
 const JOININGS: usize = 3;
 const JOINED: f64 = 1e-2;
-/// Times that an interval is halved, samples of a channel that it takes, and how many times the usual mean square of a channel's residuals is
-/// missed where a force does not stay what it is.
-const HALVED: usize = 5;
-const FEWEST: f64 = 6.0;
-const UNSTEADY: f64 = 4.0;
-/// Largest factor of a mean square that a wrong figure of the noise may stand for.
-const WRONG: f64 = 4.0;
 /// Standard deviations of its tolerance by which a number moves until its column is taken anew: a mass and an arm whose product shows are told apart by
 /// what their columns differ in, of second order.
 const MOVED: f64 = 0.1;
@@ -140,7 +132,7 @@ impl<'a> Problem<'a> {
         channels.dedup();
         let sampled = stage.tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.times.len()));
         let knots = (sampled.min().unwrap_or(0) / SAMPLES).clamp(*KNOTS.start(), *KNOTS.end());
-        let coarse = coarse(&stage, plant, &forces, (&runs, knots));
+        let coarse = coarse::of_rig(&stage, (plant, &forces), (&runs, knots));
         Self { stage, coarse, plant, runs, knots, forces, channels }
     }
 
@@ -233,60 +225,6 @@ impl<'a> Problem<'a> {
         self.settle(none, SETTLING, false)
     }
 
-    /// A fit with intervals halved in which the missing force does not stay what it is, as far as there are samples for it.
-    /// `reuse`: derivatives of the others stay what they are until all are.
-    pub fn refined(&self, mut now: Fitted, reuse: bool) -> Result<Fitted, DiagnoseError> {
-        let begun = now.intervals();
-        for _ in 0..HALVED {
-            let frame = self.frame(&now);
-            let bases: Option<Vec<Vec<Base>>> = now.tracks.par_iter().map(|t| frame.exact(t)).collect();
-            let which = self.unsteady(&now, &bases.ok_or_else(|| self.lost())?);
-            if !which.iter().flatten().any(|w| *w) {
-                break;
-            }
-            let tracks: Vec<Track> =
-                now.tracks.par_iter().zip(&which).map(|(t, w)| frame.halved(t, w)).collect::<Result<_, _>>()?;
-            let again = || {
-                let pairs = now.tracks.par_iter().zip(&now.links).zip(&tracks);
-                pairs.map(|((before, links), after)| frame.links_again((before, links), after).map(Arc::new)).collect()
-            };
-            let links: Option<Vec<Arc<Vec<Link>>>> = reuse.then(again).flatten();
-            now.spread.local.clear();
-            now = self.settle(Fitted { tracks, links: links.unwrap_or_default(), ..now }, SETTLING, reuse)?;
-        }
-        if reuse && now.intervals() > begun {
-            now.links.clear();
-            now = self.settle(now, SETTLING, false)?;
-        }
-        Ok(now)
-    }
-
-    /// Intervals in which a channel is missed by far more than its noise, as most of them show that.
-    fn unsteady(&self, now: &Fitted, bases: &[Vec<Base>]) -> Vec<Vec<bool>> {
-        let squares = |(channels, bases): (&Vec<Vec<u16>>, &Vec<Base>)| -> Vec<Vec<(f64, f64)>> {
-            let of = |(own, base): (&Vec<u16>, &Base)| {
-                let mut sums = vec![(0.0, 0.0); self.channels.len()];
-                for (c, r) in own.iter().zip(base.0.iter()) {
-                    let sum = &mut sums[*c as usize];
-                    *sum = (sum.0 + r * r, sum.1 + 1.0);
-                }
-                sums.iter().map(|(square, n)| (square / f64::max(*n, 1.0), *n)).collect()
-            };
-            channels.iter().zip(bases).map(of).collect()
-        };
-        let all: Vec<Vec<Vec<(f64, f64)>>> = self.channels_of(&now.tracks).iter().zip(bases).map(squares).collect();
-        let usual = |c: usize| {
-            let mut own: Vec<f64> = all.iter().flatten().filter(|s| s[c].1 > 0.0).map(|s| s[c].0).collect();
-            own.sort_by(f64::total_cmp);
-            own.get(own.len() / 2).copied().unwrap_or(1.0).clamp(1.0, WRONG)
-        };
-        let usual: Vec<f64> = (0..self.channels.len()).map(usual).collect();
-        let is_missed = |s: &Vec<(f64, f64)>| {
-            s.iter().zip(&usual).any(|((mean, n), usual)| *n >= FEWEST && *mean > UNSTEADY * usual)
-        };
-        all.iter().map(|run| run.iter().map(is_missed).collect()).collect()
-    }
-
     /// The same fit on other samples of the same runs.
     pub fn onto(&self, of: &Fitted) -> Result<Fitted, DiagnoseError> {
         let mut tracks = of.tracks.clone();
@@ -324,7 +262,7 @@ impl<'a> Problem<'a> {
     }
 
     /// States and spread of a model as it stands.
-    fn settle(&self, mut now: Fitted, times: usize, reuse: bool) -> Result<Fitted, DiagnoseError> {
+    pub(super) fn settle(&self, mut now: Fitted, times: usize, reuse: bool) -> Result<Fitted, DiagnoseError> {
         for time in 0..times {
             let made = self.linearise(&mut now, &[], reuse || time > 0)?;
             let steps = if time == 0 { STEPS[0] } else { STEPS[1] };
@@ -565,36 +503,6 @@ impl<'a> Problem<'a> {
         now.tracks.par_iter().zip(chains).map(of).collect()
     }
 }
-
-/// The runs at the coarsest clock at which a rig's derivatives are what they are.
-fn coarse(stage: &Stage<'_>, plant: &Plant, forces: &[Force], (runs, knots): (&[usize], usize)) -> Arc<Vec<Coarse>> {
-    let own = stage.pace.step;
-    let at =
-        |longest: Option<f64>| -> Vec<Coarse> { stage.tapes.iter().map(|t| Coarse::new(t, own, longest)).collect() };
-    let fine = at(None);
-    let tried = || {
-        let built = plant.build(&[]).ok().filter(|built| !touches(built))?;
-        let cut = |(k, run): (usize, &usize)| {
-            let track = Track::cut((stage, &fine), (&built, forces.len()), *run, knots).ok()?;
-            Some((*run, track.intervals[(k + 1) * knots / (TRIED + 1)].clone()))
-        };
-        let some: Vec<_> = runs.iter().take(TRIED).enumerate().filter_map(cut).collect();
-        let freedoms = coordinates(&built, &some.first()?.1.start);
-        let alike = |clock: &Vec<Coarse>| {
-            let frame = |coarse| Frame { stage, coarse, built: &built, freedoms: &freedoms, forces };
-            let (ours, theirs) = (frame(&fine), frame(clock));
-            let d = ours.differs(&theirs, &some);
-            d < ALIKE
-        };
-        COARSER.iter().map(|k| at(Some(k * own))).find(alike)
-    };
-    Arc::new(tried().unwrap_or(fine))
-}
-
-/// Steps of derivatives that are tried, in those of predictions; on so many runs; and share of a derivative that they may move.
-const COARSER: [f64; 3] = [8.0, 4.0, 2.0];
-const TRIED: usize = 3;
-const ALIKE: f64 = 0.02;
 
 /// Whether what the ends of intervals exceed the next ones' states by is lost in the noise.
 fn is_joined(run: &Linear) -> bool {

@@ -8,6 +8,7 @@ pub mod chain;
 pub mod coarse;
 pub mod fit;
 pub mod forces;
+mod halve;
 pub mod marginal;
 mod power;
 pub mod track;
