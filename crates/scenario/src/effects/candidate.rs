@@ -72,7 +72,7 @@ impl Coordinate {
 }
 
 /// What a set of coordinates means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Encoding {
     /// Each coordinate is its parameter.
     Direct,
@@ -92,6 +92,12 @@ pub enum Encoding {
     Phasor,
     /// The parameter's inverse first, then the others as they are.
     Compliance,
+    /// (ln of the force at a typical depth δ₀ over δ₀ to the nominal exponent, n) of a law k δⁿ: stiffness and exponent apart are told much worse
+    /// than the force that both make, and by steps that each stay in the valley which the other one moves.
+    PowerLaw {
+        /// The nominal exponent: there the first coordinate is the stiffness.
+        exponent: f64,
+    },
     /// One coordinate is what its parameter exceeds another by: a breakaway level is not below the sliding one.
     Excess {
         /// The coordinate that is an excess.
@@ -100,6 +106,9 @@ pub enum Encoding {
         over: usize,
     },
 }
+
+/// Depth at which the force of a contact is told from its exponent, m.
+const TYPICAL_DEPTH: f64 = 1e-3;
 
 impl Encoding {
     /// The parameters at values of the coordinates, component by component.
@@ -113,6 +122,11 @@ impl Encoding {
             Self::Excess { of, over: base } => {
                 let mut out = plain.clone();
                 out[of].1 += plain[base].1;
+                out
+            }
+            Self::PowerLaw { exponent } => {
+                let mut out = plain.clone();
+                out[0].1 *= TYPICAL_DEPTH.powf(exponent - value(1));
                 out
             }
             Self::Moment => vec![plain[0], over(1, value(0)), over(2, value(0)), over(3, value(0))],
