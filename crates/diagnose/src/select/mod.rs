@@ -7,6 +7,8 @@
 
 mod detail;
 mod enough;
+mod exchange;
+mod kin;
 mod left;
 mod lines;
 pub mod pool;

@@ -1,5 +1,6 @@
 //! All hypotheses as columns beside one linear model of the runs.
 
+use super::kin::are_kin;
 use crate::error::DiagnoseError;
 use crate::fit::EffectSet;
 use crate::hypothesis::{Hypothesis, Tier};
@@ -69,6 +70,12 @@ impl Pool {
     /// The hypothesis of an entry.
     pub fn of(&self, entry: usize) -> &Hypothesis {
         &self.hypotheses[self.entries[entry].hypothesis]
+    }
+
+    /// Whether an entry may join others: of one hypothesis there is one point, of one law one form.
+    pub fn is_open(&self, known: &[usize], entry: usize) -> bool {
+        let of = |e: usize| self.entries[e].hypothesis;
+        known.iter().all(|k| of(*k) != of(entry) && !are_kin(self.of(*k), self.of(entry)))
     }
 
     /// What some entries are and where, in alphabetical order: sets of other points of the same hypotheses are alike.

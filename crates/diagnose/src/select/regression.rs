@@ -104,8 +104,7 @@ impl<'a> Regression<'a> {
             let pairs: Vec<Vec<usize>> = beam
                 .iter()
                 .flat_map(|set| {
-                    let own = |e: usize| self.pool.entries[e].hypothesis;
-                    let is_new = move |e: &usize| known(set).iter().all(|k| own(*k) != own(*e));
+                    let is_new = move |e: &usize| self.pool.is_open(&known(set), *e);
                     entries.iter().copied().filter(is_new).map(move |e| [known(set), vec![e]].concat())
                 })
                 .collect();

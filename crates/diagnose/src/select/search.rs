@@ -2,7 +2,9 @@
 
 use super::detail::{but_for_a_detail, relaxed};
 use super::enough::Enough;
+use super::exchange::exchanged;
 use super::gamma_quantile_over_mean;
+use super::kin::alone_of_their_kind;
 use super::left::{Left, Smaller, is_as_quiet};
 use super::lines::lines;
 use super::pool::{Pool, price};
@@ -77,7 +79,7 @@ const PROMISING: f64 = 0.6;
 const REFUTED: f64 = 0.1;
 /// Iterations of a first fit, and to the end.
 pub(super) const LOOK: Reach = Reach { iterations: 6, reuse: true };
-const GLANCE: Reach = Reach { iterations: 3, reuse: true };
+pub(super) const GLANCE: Reach = Reach { iterations: 3, reuse: true };
 const END: Reach = Reach { iterations: 6, reuse: false };
 /// Most times that a fit is followed anew to its end, and fall of −2 log likelihood that is worth another time.
 const ENDS: usize = 5;
@@ -87,7 +89,7 @@ const SEVERAL: usize = 3;
 /// Share of the most that a set gains by which first fits may be short of what they come to.
 const CLOSE: f64 = 0.02;
 /// Criterion by which a set is far from what it was.
-const FAR: f64 = 1000.0;
+pub(super) const FAR: f64 = 1000.0;
 /// Rise of the likelihood without a joint's unknown force, as a share of the largest, below which nothing is missing there.
 const DULL: f64 = 0.003;
 
@@ -109,13 +111,15 @@ pub fn search(
     let first = hypotheses(&now)?;
     let (mut known, many) = (first.clone(), first.len());
     let all = problem.power(&now);
+    let mut refused: Vec<String> = Vec::new();
     for round in 0..MOST {
         let room = MOST.saturating_sub(now.set.findings().count());
         let bare = bare(problem, &now)?;
         if round > 0 {
             known = hypotheses(&now)?;
         }
-        let candidates = open(known.clone(), &now, problem, &bare);
+        let mut candidates = open(known.clone(), &now, problem, &bare);
+        candidates.retain(|h| !refused.contains(&h.title()));
         let cheapest = candidates.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
         let bounds = Bounds { round, many, cheapest, all };
         // A nominal model that leaves nothing is still asked what these recordings can show.
@@ -138,12 +142,15 @@ pub fn search(
         let doubt = problem.stage.doubt;
         let takes_enough = |best: &Fitted| round == 0 || left_by(best).takes_its_part_of(&left_by(&now), all, doubt);
         let Some(best) = best.filter(takes_enough) else { break };
-        now = without_idle(problem, best, (many, all))?;
+        let (alone, gone) = alone_of_their_kind(problem, without_idle(problem, best, (many, all))?, many);
+        now = alone;
+        refused.extend(gone);
         watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
     // A joint that yields by now is no more one that may begin to, and yet that is what a joint with play becomes.
     known.extend(first);
-    found.best = simplified(problem, relaxed(problem, now, many), &known, (many, all))?;
+    let plain = simplified(problem, relaxed(problem, now, many), &known, (many, all))?;
+    found.best = exchanged(problem, plain, &found.tried, many)?;
     Ok(found)
 }
 

@@ -126,9 +126,7 @@ impl Ground<'_> {
         let spread = set.spread.softened();
         let k = self.products_of(&[&known[..], among].concat(), &spread);
         let score = self.solved(&k, &known, &spread).score;
-        let is_new =
-            |e: &usize| known.iter().all(|k| self.pool.entries[*k].hypothesis != self.pool.entries[*e].hypothesis);
-        let entries: Vec<usize> = among.iter().copied().filter(is_new).collect();
+        let entries: Vec<usize> = among.iter().copied().filter(|e| self.pool.is_open(&known, *e)).collect();
         let promise = |entry: &usize| self.promise(&k, (&known, *entry), (&spread, score));
         let mut promised: Vec<Promise> = entries.par_iter().filter_map(promise).collect();
         promised.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
