@@ -335,3 +335,21 @@ pub(super) fn dyad_axes() -> [spatial::Vec3; 6] {
     let mixed = |i: usize, j: usize| (Vec3::ith(i, 1.0) + Vec3::ith(j, 1.0)).normalize();
     [Vec3::x(), Vec3::y(), Vec3::z(), mixed(0, 1), mixed(0, 2), mixed(1, 2)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_law_keeps_its_force_at_a_typical_depth_when_its_exponent_moves() {
+        let coordinates = [Coordinate::log("k", 1e6, [1e3, 1e9]), Coordinate::free("n", 1.5)];
+        let law = Encoding::PowerLaw { exponent: 1.5 };
+        let at = |x: [f64; 2]| law.decode(&coordinates, &x).into_iter().map(|p| p.1).collect::<Vec<f64>>();
+        let force = |p: &[f64], depth: f64| p[0] * depth.powf(p[1]);
+        let nominal = at([1e6f64.ln(), 1.5]);
+        assert!((nominal[0] / 1e6 - 1.0).abs() < 1e-12 && nominal[1] == 1.5, "neutral is the nominal law: {nominal:?}");
+        let softer = at([1e6f64.ln(), 1.3]);
+        assert!((force(&softer, TYPICAL_DEPTH) / force(&nominal, TYPICAL_DEPTH) - 1.0).abs() < 1e-12, "{softer:?}");
+        assert!((force(&softer, 1e-4) / force(&nominal, 1e-4) - 10f64.powf(0.2)).abs() < 1e-9, "flatter");
+    }
+}
