@@ -26,9 +26,9 @@ use std::borrow::Borrow;
 /// One interval: products of its columns, and how it goes on.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// Channels and products of (S, F, Y) over their residuals.
-    pub grams: Vec<(u16, DMatrix<f64>)>,
-    /// Their sum.
+    /// Channels and what each tells.
+    pub parts: Vec<(u16, Part)>,
+    /// Products of (S, F, Y) over the residuals of all channels.
     pub all: DMatrix<f64>,
     /// ∂end/∂s.
     pub a: DMatrix<f64>,
@@ -36,6 +36,43 @@ pub struct Node {
     pub b: DMatrix<f64>,
     /// ∂end/∂θ, and last what the end exceeds the next interval's state by.
     pub d: DMatrix<f64>,
+}
+
+/// What one channel tells in an interval, whichever is smaller.
+#[derive(Clone, Debug)]
+pub enum Part {
+    /// Rows of (S, F, Y).
+    Rows(DMatrix<f64>),
+    /// Their products.
+    Products(DMatrix<f64>),
+}
+
+impl Part {
+    fn new(rows: DMatrix<f64>) -> Self {
+        if rows.nrows() < rows.ncols() { Self::Rows(rows) } else { Self::Products(rows.transpose() * rows) }
+    }
+
+    /// Adds so many times the products to a sum.
+    fn add_to(&self, sum: &mut DMatrix<f64>, weight: f64) {
+        match self {
+            Self::Rows(rows) => sum.gemm(weight, &rows.transpose(), rows, 1.0),
+            Self::Products(products) => sum.zip_apply(products, |s, p| *s += weight * p),
+        }
+    }
+
+    /// Expected square of the residuals at (δs, f, y), of which the first coordinates are known but for a covariance.
+    fn square(&self, at: &DVector<f64>, doubt: &DMatrix<f64>) -> f64 {
+        let n = doubt.nrows();
+        match self {
+            Self::Rows(rows) => {
+                let own = rows.columns(0, n);
+                (rows * at).norm_squared() + (own * doubt).dot(&own)
+            }
+            Self::Products(products) => {
+                at.dot(&(products * at)) + products.view((0, 0), (n, n)).component_mul(doubt).sum()
+            }
+        }
+    }
 }
 
 /// What may vary beside the numbers.
@@ -136,28 +173,39 @@ fn filter<N: Borrow<Node>>(
 }
 
 impl Node {
-    /// How an interval with such products goes on.
-    pub fn new(grams: Vec<(u16, DMatrix<f64>)>, [a, b, d]: [DMatrix<f64>; 3]) -> Self {
+    /// An interval by the rows of each channel, and how it goes on.
+    pub fn new(rows: Vec<(u16, DMatrix<f64>)>, [a, b, d]: [DMatrix<f64>; 3]) -> Self {
         let side = b.ncols() + a.ncols() + d.ncols();
-        let all = grams.iter().fold(DMatrix::zeros(side, side), |sum, (_, gram)| sum + gram);
-        Self { grams, all, a, b, d }
+        let parts: Vec<(u16, Part)> = rows.into_iter().map(|(channel, rows)| (channel, Part::new(rows))).collect();
+        let mut all = DMatrix::zeros(side, side);
+        parts.iter().for_each(|(_, part)| part.add_to(&mut all, 1.0));
+        Self { parts, all, a, b, d }
     }
 
     /// The same of channels whose noise is as it is known.
     pub fn summed(all: DMatrix<f64>, [a, b, d]: [DMatrix<f64>; 3]) -> Self {
-        Self { grams: Vec::new(), all, a, b, d }
+        Self { parts: Vec::new(), all, a, b, d }
     }
 
     /// Products over all channels, each over the factor of its noise: most have none.
     fn weighted(&self, noise: &DVector<f64>) -> DMatrix<f64> {
+        let factor = |channel: &u16| noise[*channel as usize];
+        // What is next to nothing is not told as a difference.
+        if self.parts.iter().any(|(channel, _)| factor(channel) > LOUD) {
+            let mut sum = DMatrix::zeros(self.all.nrows(), self.all.ncols());
+            self.parts.iter().for_each(|(channel, part)| part.add_to(&mut sum, factor(channel).powi(-2)));
+            return sum;
+        }
         let mut sum = self.all.clone();
-        for (channel, gram) in self.grams.iter().filter(|(channel, _)| noise[*channel as usize] != 1.0) {
-            let weight = noise[*channel as usize].powi(-2) - 1.0;
-            sum.zip_apply(gram, |s, g| *s += weight * g);
+        for (channel, part) in self.parts.iter().filter(|(channel, _)| factor(channel) != 1.0) {
+            part.add_to(&mut sum, factor(channel).powi(-2) - 1.0);
         }
         sum
     }
 }
+
+/// Factor of a channel's noise from which on its part is no small change of all.
+const LOUD: f64 = 10.0;
 
 /// Eliminates states and forces of a run, whose intervals may be made one after the other.
 pub fn eliminate<N: Borrow<Node>>(nodes: impl IntoIterator<Item = N>, prior: Prior<'_>) -> Marginal {
@@ -192,11 +240,8 @@ pub fn smooth(nodes: &[Node], filtered: &Filtered, theta: &DVector<f64>) -> Smoo
         let covariance = known.inverse();
         let spread = covariance.diagonal().rows(n_x, n_f).into_owned();
         let doubt = spread_of(&covariance, &seen.l, &seen.force);
-        let square = |(channel, gram): &(u16, DMatrix<f64>)| {
-            let own = gram.view((0, 0), (n_u, n_u)).component_mul(&doubt).sum();
-            (*channel, all.dot(&(gram * &all)) + own)
-        };
-        out.squares.push(node.grams.iter().map(square).collect());
+        let square = |(channel, part): &(u16, Part)| (*channel, part.square(&all, &doubt));
+        out.squares.push(node.parts.iter().map(square).collect());
         out.variances.push(spread.component_mul(&seen.force).component_mul(&seen.force));
         out.states.push(state);
         out.forces.push(force);
@@ -330,9 +375,8 @@ mod tests {
         };
         let rows = draw(SAMPLES, STATES + FORCES + NUMBERS + 1);
         let (a, b, d) = (draw(STATES, STATES), draw(STATES, FORCES), draw(STATES, NUMBERS + 1));
-        let own = |rows: DMatrix<f64>| rows.tr_mul(&rows);
-        let grams = vec![(0, own(rows.rows(0, 1).into_owned())), (1, own(rows.rows(1, SAMPLES - 1).into_owned()))];
-        (rows, Node::new(grams, [a, b, d]))
+        let parts = vec![(0, rows.rows(0, 1).into_owned()), (1, rows.rows(1, SAMPLES - 1).into_owned())];
+        (rows, Node::new(parts, [a, b, d]))
     }
 
     /// The same problem with all unknowns at once: ρ = J z + Y y with z of unit variance; by sample over the factor of its noise.

@@ -114,10 +114,10 @@ impl Linear {
                     (0..n_f).for_each(|k| all[(i, n_x + k)] = link.f[(*row, k)]);
                     kept.iter().enumerate().for_each(|(k, c)| all[(i, n_x + n_f + k)] = side.y[(*row, *c)]);
                 }
-                (channel, all.transpose() * all)
+                (channel, all)
             };
-            let grams = counts(channels).into_iter().map(|(channel, _)| of_channel(channel)).collect();
-            Node::new(grams, [link.a.clone(), link.b.clone(), side.d.select_columns(&kept)])
+            let rows = counts(channels).into_iter().map(|(channel, _)| of_channel(channel)).collect();
+            Node::new(rows, [link.a.clone(), link.b.clone(), side.d.select_columns(&kept)])
         };
         let nodes: Vec<Node> = self.links.par_iter().zip(&self.sides).zip(&self.channels).map(node).collect();
         Chain { run: self.run, price: self.price, nodes, start: self.start.clone(), samples: self.samples() }
@@ -468,6 +468,7 @@ impl Squares {
 
 #[cfg(test)]
 mod tests {
+    use super::super::chain::Part;
     use super::*;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;
@@ -536,7 +537,8 @@ mod tests {
         let last = node.all.ncols() - 1;
         // Residuals that no state and no force makes.
         node.all[(last, last)] += 1e8;
-        node.grams[0].1[(last, last)] += 1e8;
+        let Part::Products(products) = &mut node.parts[0].1 else { panic!("it has more rows than columns") };
+        products[(last, last)] += 1e8;
         chain
     }
 
