@@ -8,7 +8,6 @@
 use super::forces::Force;
 use super::track::{Frame, Track, coordinates};
 use crate::linear::Stage;
-use crate::pace::touches;
 use crate::plant::Plant;
 use crate::replay::SAME;
 use crate::tape::{CommandTape, Tape};
@@ -50,7 +49,7 @@ pub struct Few {
     told: Vec<(u16, [u16; 4], [f32; 4])>,
 }
 
-/// All runs at the coarsest clock at which a rig's derivatives are what they are; as they were recorded where parts may touch.
+/// All runs at the coarsest clock at which a rig's derivatives are what they are; as they were recorded where a model has corners.
 pub fn of_rig(
     stage: &Stage<'_>,
     (plant, forces): (&Plant, &[Force]),
@@ -60,7 +59,7 @@ pub fn of_rig(
     let at = |longest| -> Vec<Coarse> { stage.tapes.iter().map(|t| Coarse::new(t, own, longest)).collect() };
     let fine = at(None);
     let tried = || {
-        let built = plant.build(&[]).ok().filter(|built| built.model.is_smooth() && !touches(built))?;
+        let built = plant.build(&[]).ok().filter(|built| built.model.is_smooth())?;
         let cut = |(k, run): (usize, &usize)| {
             let track = Track::cut((stage, &fine), (&built, forces.len()), *run, knots).ok()?;
             Some((*run, track.intervals[(k + 1) * knots / (TRIED + 1)].clone()))

@@ -193,7 +193,10 @@ impl Frame<'_> {
         let column = |moved: Option<Base>, step: f64| {
             let few = moved.as_ref().map_or_else(|| DVector::zeros(r.len()), |(q, _)| (q - r) / step);
             let by_end = |(_, e): &Base| DVector::from_vec(e.difference(end, self.freedoms)) / step;
-            (told(self.built, interval, few), moved.as_ref().map_or_else(|| DVector::zeros(n_x), by_end))
+            (
+                told(self.built.model.is_smooth(), interval, few),
+                moved.as_ref().map_or_else(|| DVector::zeros(n_x), by_end),
+            )
         };
         let by_state = |freedom: &Freedom| {
             let step = freedom.first_step();
@@ -241,6 +244,11 @@ impl Frame<'_> {
         Some(answer)
     }
 
+    /// Whether both ends of a difference quotient are models without corners: else both are replayed as they are judged.
+    fn is_smooth_with(&self, variation: &Variation) -> bool {
+        self.built.model.is_smooth() && variation.built.model.is_smooth()
+    }
+
     /// Columns of a number along a run: ∂r/∂θ and ∂end/∂θ of each interval.
     pub fn columns(&self, track: &Track, bases: &Bases, variation: &Variation) -> Vec<Column> {
         let mut out = Vec::with_capacity(track.intervals.len());
@@ -252,18 +260,20 @@ impl Frame<'_> {
     fn put_columns(&self, track: &Track, bases: &Bases, variation: &Variation, mut put: impl FnMut(Column)) {
         let brings = has_memory(&variation.built, self.built);
         let mut carried: Option<Start> = None;
-        let bases = if variation.built.model.is_smooth() { &bases.smooth } else { &bases.exact };
+        let is_smooth = self.is_smooth_with(variation);
+        let bases = if is_smooth { &bases.smooth } else { &bases.exact };
         for (interval, (r, end)) in track.intervals.iter().zip(bases) {
             let mut start = interval.start.fitted_to(&variation.built);
             if let Some(before) = carried.as_ref().filter(|_| brings) {
                 start.remember(before, self.built);
             }
-            let Some((q, e)) = self.glance(&variation.built, track.run, interval, &start) else {
-                put((told(&variation.built, interval, DVector::zeros(r.len())), DVector::zeros(self.freedoms.len())));
+            let replay = if is_smooth { Self::glance } else { Self::shoot };
+            let Some((q, e)) = replay(self, &variation.built, track.run, interval, &start) else {
+                put((told(is_smooth, interval, DVector::zeros(r.len())), DVector::zeros(self.freedoms.len())));
                 continue;
             };
             let by = DVector::from_vec(e.difference(end, self.freedoms)) / variation.step;
-            put((told(&variation.built, interval, (q - r) / variation.step), by));
+            put((told(is_smooth, interval, (q - r) / variation.step), by));
             carried = Some(e);
         }
     }
@@ -293,9 +303,8 @@ impl Frame<'_> {
     /// The same as derivatives by some variations are taken too, and where each ends; none where a replay left the range of numbers.
     pub fn bases(&self, track: &Track, variations: &[Variation]) -> Option<Bases> {
         let exact = self.exact(track)?;
-        let is_smooth = |v: &Variation| v.built.model.is_smooth();
         let glance = |i: &Interval| self.glance(self.built, track.run, i, &i.start);
-        let smooth = if variations.iter().any(is_smooth) {
+        let smooth = if variations.iter().any(|v| self.is_smooth_with(v)) {
             track.intervals.par_iter().map(glance).collect()
         } else {
             Some(Vec::new())
@@ -517,8 +526,8 @@ struct Passed {
 }
 
 /// Values of all scalars of an interval from those that a model was read at.
-fn told(built: &Built, interval: &Interval, read: DVector<f64>) -> DVector<f64> {
-    if built.model.is_smooth() { interval.few.expanded(&read) } else { read }
+fn told(is_glanced: bool, interval: &Interval, read: DVector<f64>) -> DVector<f64> {
+    if is_glanced { interval.few.expanded(&read) } else { read }
 }
 
 /// Largest share of a column's length by which another one differs from it.
