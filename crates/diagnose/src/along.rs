@@ -89,9 +89,8 @@ pub(crate) fn told_by_all_runs(
     if course.found.best.tracks.len() == problem.runs.len() {
         return Ok(course);
     }
-    let nominal = problem.along(&course.found.nominal, &course.found.nominal.set)?;
+    let [nominal, along] = problem.along([&course.found.nominal, &course.found.best])?;
     let set = course.found.best.set.clone();
-    let along = problem.along(&course.found.best, &set)?;
     let best = if set.members.is_empty() { along } else { problem.fit(&along, set, ALL_RUNS)? };
     let left = [remainder(&problem, &nominal)?, remainder(&problem, &best)?];
     Ok(Course { found: Found { nominal, best, ..course.found }, left })
@@ -157,21 +156,21 @@ pub(crate) fn fit_to_all(
 /// Scalars beyond which an even selection of them has to do.
 const MOST: usize = 2_000_000;
 
-/// Windows of all runs with the states that a set has there; those of runs that were left out follow its numbers as they are.
+/// Windows of all runs with the states that each of two sets has there; those of runs that were left out follow its numbers as they are.
 pub(crate) fn windows(
     stage: &Stage<'_>,
     plant: &Plant,
     (own, window): (&Facts, f64),
-    fitted: &Fitted,
-) -> Result<Fit, DiagnoseError> {
+    fitted: [&Fitted; 2],
+) -> Result<[Fit; 2], DiagnoseError> {
     let left_out = problem(stage, plant, own, Role::Holdout);
-    let joined = |fit: Fitted| if fitted.set.members.is_empty() { fit } else { left_out.joined(fit) };
-    let mut fits = vec![joined(fitted.clone())];
+    let joined = |fit: Fitted| if fit.set.members.is_empty() { fit } else { left_out.joined(fit) };
+    let mut all = fitted.map(|fit| vec![joined(fit.clone())]);
     if !left_out.runs.is_empty() {
-        fits.push(joined(left_out.along(fitted, &fitted.set)?));
+        all.iter_mut().zip(left_out.along(fitted)?).for_each(|(own, fit)| own.push(joined(fit)));
     }
-    let segments = fits.iter().flat_map(|f| windows_of(&left_out, f, window)).collect();
-    Ok(as_fit(stage, fitted, segments))
+    let [one, other] = all.map(|own| own.iter().flat_map(|f| windows_of(&left_out, f, window)).collect());
+    Ok([as_fit(stage, fitted[0], one), as_fit(stage, fitted[1], other)])
 }
 
 /// Windows of the runs of a fit, whether these are a problem's own or others.

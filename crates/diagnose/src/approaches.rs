@@ -10,6 +10,7 @@ use crate::error::DiagnoseError;
 use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::linear::{Segment, Stage};
 use crate::plant::Plant;
+use crate::reading::Reading;
 use crate::replay::{Span, touches_in};
 use crate::stretches::guessed;
 use crate::tape::Tape;
@@ -36,8 +37,37 @@ const LONGEST: f64 = 0.5;
 
 /// The flights of at least a window, as the windows' replays tell, run by run and in order; empty where nothing ever or always touches.
 pub(crate) fn find_flights(stage: &Stage<'_>, windows: &Fit) -> Vec<Flight> {
+    between(stage, windows, &find_touches(stage, windows))
+}
+
+/// Where each window's replay touches.
+fn find_touches(stage: &Stage<'_>, windows: &Fit) -> Vec<Vec<Span>> {
     let of = |s: &Segment| touches_in(&windows.built, &stage.tapes[s.run], &s.start, s.span, stage.pace);
-    let touched: Vec<Vec<Span>> = windows.segments.par_iter().map(of).collect();
+    windows.segments.par_iter().map(of).collect()
+}
+
+/// The same but for what hangs on touches being as the model has them: what a window's replay does after its first touch, and where a sensor that rests
+/// untouched reads a force.
+pub(crate) fn find_sure_flights(stage: &Stage<'_>, windows: &Fit) -> Vec<Flight> {
+    let felt = |s: &Segment| {
+        let tape = &stage.tapes[s.run];
+        let is_felt = |r: &&Reading| windows.built.sensor(&r.channel).is_some_and(|(gauge, _)| gauge.rests_untouched());
+        let times = |r: &Reading| r.loud(FELT).filter(|t| (s.span.from..=s.span.to).contains(t)).collect::<Vec<_>>();
+        tape.readings.iter().filter(is_felt).flat_map(times).collect::<Vec<f64>>()
+    };
+    let closed = |(s, touched): (&Segment, Vec<Span>)| {
+        let first = touched.iter().map(|t| t.from).chain(felt(s)).reduce(f64::min);
+        first.map(|from| Span { from, to: s.span.to }).into_iter().collect()
+    };
+    let touched: Vec<Vec<Span>> = windows.segments.iter().zip(find_touches(stage, windows)).map(closed).collect();
+    between(stage, windows, &touched)
+}
+
+/// Standard deviations of a force sensor's noise beyond which it feels a touch.
+const FELT: f64 = 6.0;
+
+/// The flights of at least a window between touches.
+fn between(stage: &Stage<'_>, windows: &Fit, touched: &[Vec<Span>]) -> Vec<Flight> {
     if touched.iter().all(Vec::is_empty) {
         return Vec::new();
     }
@@ -45,7 +75,7 @@ pub(crate) fn find_flights(stage: &Stage<'_>, windows: &Fit) -> Vec<Flight> {
     let mut runs: Vec<usize> = windows.segments.iter().map(|s| s.run).collect();
     runs.dedup();
     for run in runs {
-        let of_run = windows.segments.iter().zip(&touched).filter(|(s, _)| s.run == run);
+        let of_run = windows.segments.iter().zip(touched).filter(|(s, _)| s.run == run);
         let least = of_run.clone().map(|(s, _)| s.span.to - s.span.from).fold(f64::INFINITY, f64::min);
         let (mut from, end) = stage.tapes[run].span;
         let closed: Vec<Span> = of_run.flat_map(|(_, touched)| touched.iter().copied()).collect();

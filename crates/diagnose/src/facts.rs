@@ -60,10 +60,14 @@ impl Facts {
         Survey { joints, bodies, contacts, duration: *duration, lines }
     }
 
-    /// Without the joints and bodies that effects have brought: a mount's tip has no friction of its own.
+    /// Without the joints and bodies that effects have brought: a mount's tip has no friction of its own. What is touched at other times is not free of torques.
     pub fn of_parts(mut self, nominal: &Self) -> Self {
         self.joints.retain(|j| nominal.joints.iter().any(|own| own.name == j.name));
-        self.bodies.retain(|b| nominal.bodies.iter().any(|own| own.name == b.name));
+        self.bodies.retain_mut(|b| {
+            let own = nominal.bodies.iter().find(|own| own.name == b.name);
+            b.is_torque_free &= own.is_some_and(|own| own.is_torque_free);
+            own.is_some()
+        });
         self
     }
 }

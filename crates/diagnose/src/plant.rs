@@ -79,6 +79,13 @@ impl Plant {
         Ok(())
     }
 
+    /// The same recording of a scenario that has some more effects.
+    pub fn with(&self, effects: &[Effect]) -> Self {
+        let mut scenario = self.scenario.clone();
+        scenario.effects.extend(effects.iter().cloned());
+        Self { scenario, channels: self.channels.clone(), drives: self.drives.clone(), stock: OnceLock::new() }
+    }
+
     /// What a vector channel (without its component) measures in the nominal model.
     pub fn quantity(&self, model: &Model, channel: &str) -> Result<Quantity, MeasureError> {
         Gauge::resolve(&self.scenario, model, channel).map(|gauge| gauge.quantity())

@@ -68,6 +68,12 @@ impl Reading {
         }
     }
 
+    /// Instants at which a component is off zero by more than so many standard deviations, s.
+    pub(crate) fn loud(&self, sigmas: f64) -> impl Iterator<Item = f64> + '_ {
+        let is_loud = move |v: &Value| matches!(v, Value::Vector(v) if v.amax() > sigmas * self.sigma);
+        self.times.iter().zip(&self.values).filter(move |(_, v)| is_loud(v)).map(|(t, _)| *t)
+    }
+
     /// Residual of sample `i` in units of noise, written to the front of `out`.
     pub fn write_residual(&self, i: usize, predicted: &Value, out: &mut [f64]) {
         let difference = match (predicted, &self.values[i]) {

@@ -8,7 +8,6 @@
 use crate::along;
 use crate::attempt::Attempt;
 use crate::better::{SETTLED, is_clearly_better, is_near_noise, merit};
-use crate::catalogue::{self, hypotheses};
 use crate::clock::Clock;
 use crate::curves;
 use crate::diagnosis::{Diagnosis, Explained, Rival, Verdict};
@@ -17,7 +16,6 @@ use crate::evidence::{self, Evidence};
 use crate::excerpts;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, Effort, Fit, UNDAMPED, fit};
-use crate::hypothesis::Hypothesis;
 use crate::identify::fit::Fitted;
 use crate::judge::{Judgement, judge};
 use crate::limits;
@@ -28,10 +26,10 @@ use crate::noise::{self, Noise};
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::Pace;
-use crate::search::{Limits, WHOLE, errors, search};
 use crate::share;
+use crate::sought::{Sought, seek};
 use crate::standing::{Standing, fit_in_turns, follow};
-use crate::stretches::{self, Stretches, cut, joined};
+use crate::stretches::{cut, joined};
 use crate::tape::{Tape, load};
 use crate::tell;
 use crate::uncertainty::{self, Uncertainty};
@@ -64,8 +62,6 @@ pub(crate) struct Findings {
     pub discretisation: Discretisation,
 }
 
-/// Limits of the search.
-const LIMITS: Limits = Limits { effects: 6, refits: 6, ends: 2 };
 /// Error (units of noise) and share of the mismatch up to which what a corrected model leaves may be the errors of its own steps and starts.
 const RIGHT: f64 = 1.1;
 const NEXT_TO_NOTHING: f64 = 0.01;
@@ -179,7 +175,7 @@ fn diagnose_in(
     let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } = begun;
     let pace = discretisation.pace;
     let mut stage = Stage { tapes: &thinned, pace, work, doubt };
-    let Sought { nominal, whole, located, standing, attempts } =
+    let Sought { nominal, whole, located, standing, attempts, mut rivals } =
         seek(&mut stage, &plant, (nominal, &tapes, window), &mut clock)?;
     clock.stage("fit to all samples", 0.75);
     let follows = standing.follows();
@@ -200,7 +196,8 @@ fn diagnose_in(
     let (explained, helps) = share::explained(&judgement, &tapes, &found, window);
     let verdict = verdict(&judgement, &found, (follows, helps));
     let uncertainty = how_sure(&stage, &plant, &found, verdict)?;
-    let rivals = tell::rivals_by_round(&attempts, &found.set);
+    rivals.retain(|(title, _)| found.set.findings().any(|(h, _)| h.title() == *title));
+    rivals.extend(tell::rivals_by_round(&attempts, &found.set));
     clock.stage("write", 1.0);
     let findings = Findings {
         title: set.title.clone(),
@@ -298,9 +295,9 @@ fn predict_along(
     (own, window): (&Facts, f64),
 ) -> Result<Predicted, DiagnoseError> {
     let best = &course.found.best;
-    let known = along::windows(few, plant, (own, window), &course.found.nominal)?;
+    let thin_best = Fitted { set: best.set.clone(), ..thin_best };
+    let [known, corrected] = along::windows(few, plant, (own, window), [&course.found.nominal, &thin_best])?;
     let known = Fit { set: EffectSet::default(), built: plant.build(&[])?, ..known };
-    let corrected = along::windows(few, plant, (own, window), &Fitted { set: best.set.clone(), ..thin_best })?;
     let runs: Vec<Segment> =
         joined(&corrected.segments, few.tapes).into_iter().filter(|s| few.tapes[s.run].role == Role::Fit).collect();
     let whole = follow(few, plant, best.set.frozen(), &runs)?;
@@ -348,48 +345,6 @@ fn how_sure(stage: &Stage<'_>, plant: &Plant, found: &Fit, verdict: Verdict) -> 
             uncertainty::estimate(stage, plant, found)
         }
     }
-}
-
-/// What a search has found, and beside what.
-struct Sought {
-    /// The nominal model in windows, and over whole runs.
-    nominal: Fit,
-    whole: Fit,
-    /// Where forces are missing beside it.
-    located: Located,
-    standing: Standing,
-    attempts: Vec<Attempt>,
-}
-
-/// Says where forces are missing and searches for what they are; the stage is left at the pace that this took.
-fn seek(
-    stage: &mut Stage<'_>,
-    plant: &Plant,
-    (nominal, tapes, window): (Fit, &[Tape], f64),
-    clock: &mut Clock<'_>,
-) -> Result<Sought, DiagnoseError> {
-    let nominal = doubted(stage, plant, nominal)?;
-    clock.stage("locate the missing force", 0.15);
-    let own_parts = Facts::new(&nominal.built, tapes);
-    let located = locate(stage, plant, &nominal, places(&own_parts, window))?;
-    clock.stage("search", 0.25);
-    let Stretches { windows, rungs, whole } = stretches::choose(stage, plant, &nominal, window)?;
-    let mut whole = follow(stage, plant, EffectSet::default(), &whole)?;
-    // Windows that are followed are no reason to doubt the model for runs that are not.
-    if lost::calc_share(stage, &whole) > 0.0 && lost::calc_poor_share(stage, &nominal) == 0.0 {
-        let runs = lost::scattered(stage, &whole.built, &whole.segments);
-        whole = fit(stage, plant, EffectSet::default(), runs, Effort::STARTS)?;
-    }
-    let [short, long] = [nominal.rms(), whole.rms()];
-    stage.work.watch.step(&format!("the nominal model: error {short:.3} in windows, {long:.3} over whole runs"));
-    let standing = loosened(stage, plant, Standing::new(stage, windows, whole.clone(), rungs))?;
-    let candidates = |stage: &Stage<'_>, now: &Fit| {
-        let facts = Facts::new(&now.built, tapes).of_parts(&own_parts);
-        let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
-        Ok(promising(&locate(stage, plant, now, joints)?, hypotheses(&facts)))
-    };
-    let (standing, attempts) = search(stage, plant, standing, &candidates, &LIMITS)?;
-    Ok(Sought { nominal, whole, located, standing, attempts })
 }
 
 /// What there is before anything is searched for.
@@ -457,28 +412,6 @@ fn chosen(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> D
     let found = pace::choose(stage, built, segments, own);
     stage.work.watch.step(&found.words());
     found
-}
-
-/// The same with the initial states of windows that stand out begun anew: where most are followed it is not the model that loses them.
-fn doubted(stage: &Stage<'_>, plant: &Plant, nominal: Fit) -> Result<Fit, DiagnoseError> {
-    let share = lost::calc_poor_share(stage, &nominal);
-    if share == 0.0 || share > lost::FEW {
-        return Ok(nominal);
-    }
-    let segments = stage.begun_anew(&nominal.built, &nominal.segments, (Effort::STARTS, lost::POOR_WINDOW));
-    fit(stage, plant, EffectSet::default(), segments, Effort::STARTS)
-}
-
-/// The same with the nominal numbers free within the tolerances that the scenario gives them.
-fn loosened(stage: &Stage<'_>, plant: &Plant, nominal: Standing) -> Result<Standing, DiagnoseError> {
-    let within = catalogue::within(&Facts::new(&nominal.windows.built, stage.tapes), &plant.scenario.tolerance);
-    if within.members.is_empty() || !nominal.judge().is_significant() {
-        return Ok(nominal);
-    }
-    let numbers = within.slots().len();
-    let loose = nominal.refit(stage, plant, within, WHOLE)?;
-    stage.work.watch.step(&format!("{numbers} numbers free within their tolerances: {}", errors(&loose)));
-    Ok(loose)
 }
 
 /// A segment whose derivatives are to be taken anew.
@@ -557,20 +490,6 @@ fn window_of(set: &RecordingSet, tapes: &[Tape], parts: f64) -> f64 {
 /// Windows of the longest run, at first and where that leads to little. Chosen with the practice recordings at hand. They decide more than they should: at 10 instead of 12 the search takes
 /// another law first on one practice recording with limit cycles, and two slow and fast effects at once were found in the longer ones alone.
 const WINDOWS: [f64; 2] = [12.0, 7.5];
-
-/// Effects at joints where no force is missing are not looked at: an arm has many places.
-fn promising(located: &Located, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {
-    let best = located.ranked().first().map_or(0.0, |p| located.share(*p));
-    let is_dull = |place: &str| {
-        let at = located.places.iter().position(|p| p.name == place);
-        place.starts_with("joint:") && at.is_some_and(|p| located.share(p) < DULL * best)
-    };
-    all.retain(|h| !is_dull(&h.place));
-    all
-}
-
-/// Share of the best place's below which a joint is dull.
-const DULL: f64 = 0.15;
 
 /// What was found, from what it leaves and from what it does for runs left out of the fit: an effect that helps there is never dropped.
 fn verdict(judgement: &Judgement, found: &Fit, (follows, helps): (bool, bool)) -> Verdict {

@@ -69,16 +69,16 @@ const SCREENED: usize = 30;
 
 /// Adds and removes effects until nothing significant is left or nothing helps.
 ///
-/// `stage` is left at the pace at which the last set was fitted: what an effect brings may need finer steps than the nominal model does.
+/// It goes on from a standing and what was tried before that. `stage` is left at the pace at which the last set was fitted: what an effect brings may need finer steps than the nominal model does.
 pub fn search(
     stage: &mut Stage<'_>,
     plant: &Plant,
-    mut now: Standing,
+    (mut now, mut attempts): (Standing, Vec<Attempt>),
     hypotheses: &Candidates<'_>,
     limits: &Limits,
 ) -> Result<(Standing, Vec<Attempt>), DiagnoseError> {
-    let (mut attempts, mut known) = (Vec::new(), Vec::new());
-    let mut round = 0;
+    let mut known: Vec<Hypothesis> = now.judge().set.findings().map(|(h, _)| h.clone()).collect();
+    let mut round = attempts.iter().map(|a| a.round + 1).max().unwrap_or(0);
     let at_first = now.whole.clone();
     if now.whole.rms() < lost::NEAR && refine(stage, &now) {
         now = now.refit(stage, plant, now.judge().set.clone(), WHOLE)?;

@@ -11,6 +11,7 @@ use crate::linear::{Segment, Stage};
 use crate::lost::{self, FEW, NEAR, POOR_WINDOW};
 use crate::plant::{Built, Plant};
 use crate::stretches::STEEP;
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -70,6 +71,17 @@ impl Standing {
     /// Whether whole runs follow the model far enough to be judged by.
     pub fn follows(&self) -> bool {
         self.whole.rms() < self.reach
+    }
+
+    /// The same model as a set beside a scenario that has less of it.
+    pub(crate) fn of_plant(&self, plant: &Plant, set: &EffectSet) -> Result<Self, DiagnoseError> {
+        let built = plant.build(&set.effects())?;
+        let of = |fit: &Fit| {
+            let covariance = DMatrix::zeros(0, 0);
+            Fit { set: set.clone(), built: built.clone(), covariance, converged: false, ..fit.clone() }
+        };
+        let [windows, whole] = [&self.windows, &self.whole].map(of);
+        Ok(Self { windows, whole, ..self.clone() })
     }
 
     /// The same with another set, its parameters fitted at the length that judges.

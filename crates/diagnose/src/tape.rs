@@ -132,6 +132,17 @@ impl Tape {
         Self { index: self.index, span: self.span, ..thinned }
     }
 
+    /// A part of the run, with the channels that are wanted.
+    pub(crate) fn within(&self, Span { from, to }: Span, is_wanted: impl Fn(&str) -> bool) -> Self {
+        let part = |r: &Reading| {
+            let range = r.times.partition_point(|t| *t < from)..r.times.partition_point(|t| *t <= to);
+            let (times, values) = (r.times[range.clone()].to_vec(), r.values[range].to_vec());
+            Reading { times, values, ..r.clone() }
+        };
+        let readings = self.readings.iter().filter(|r| is_wanted(&r.channel)).map(part);
+        self.with_readings(readings.filter(|r| !r.times.is_empty()).collect())
+    }
+
     /// The same run with its sensors as late as they are in a model.
     pub(crate) fn as_late_as(&self, built: &Built) -> Self {
         let readings = self.readings.iter().map(|r| Reading { late_s: lateness(built, r), ..r.clone() }).collect();

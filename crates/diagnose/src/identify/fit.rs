@@ -175,7 +175,7 @@ impl<'a> Problem<'a> {
     }
 
     /// What can be done with so many intervals of each run; with shorter ones where a replay leaves the range of numbers before its samples correct it.
-    fn shorter(&self, made: impl Fn(usize) -> Result<Fitted, DiagnoseError>) -> Result<Fitted, DiagnoseError> {
+    fn shorter<T>(&self, made: impl Fn(usize) -> Result<T, DiagnoseError>) -> Result<T, DiagnoseError> {
         if self.runs.is_empty() {
             return Err(self.lost());
         }
@@ -233,13 +233,17 @@ impl<'a> Problem<'a> {
         Ok(Fitted { tracks, links: Vec::new(), steady: Steady::default(), ..of.clone() })
     }
 
-    /// A set along other runs than those that it was fitted to, its numbers as they are.
-    pub fn along(&self, of: &Fitted, set: &EffectSet) -> Result<Fitted, DiagnoseError> {
+    /// Two sets along other runs than those that they were fitted to, their numbers as they are.
+    pub fn along(&self, [one, other]: [&Fitted; 2]) -> Result<[Fitted; 2], DiagnoseError> {
         self.shorter(|knots| {
-            let mut now = self.with(&self.begun_in(knots)?, set.frozen())?;
-            now.spread = Spread { local: Vec::new(), ..of.spread.clone() };
-            self.follow(&mut now)?;
-            self.settle(now, SETTLING, true)
+            let begun = self.begun_in(knots)?;
+            let along = |of: &Fitted| {
+                let mut now = self.with(&begun, of.set.frozen())?;
+                now.spread = Spread { local: Vec::new(), ..of.spread.clone() };
+                self.follow(&mut now)?;
+                self.settle(now, SETTLING, true)
+            };
+            Ok([along(one)?, along(other)?])
         })
     }
 
@@ -283,8 +287,11 @@ impl<'a> Problem<'a> {
     /// before states do where a joint leaves its rest. As it was where a replay from there leaves the range of numbers.
     pub fn joined(&self, mut now: Fitted) -> Fitted {
         let mut known = now.tracks.clone();
-        for _ in 0..JOININGS {
-            let Ok(made) = self.linearise(&mut now, &[], false) else { return Fitted { tracks: known, ..now } };
+        for time in 1..=JOININGS {
+            // Derivatives that are known lead there, or to where they are taken anew.
+            let Ok(made) = self.linearise(&mut now, &[], time < JOININGS) else {
+                return Fitted { tracks: known, ..now };
+            };
             if made.runs.iter().all(is_joined) {
                 break;
             }

@@ -13,6 +13,7 @@ mod left;
 mod lines;
 pub mod pool;
 pub mod regression;
+mod rounds;
 pub mod scale;
 pub mod search;
 pub mod sets;

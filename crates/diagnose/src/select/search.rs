@@ -1,16 +1,16 @@
 //! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
 
-use super::detail::{but_for_a_detail, relaxed};
-use super::enough::Enough;
+use super::detail::relaxed;
 use super::exchange::exchanged;
 use super::gamma_quantile_over_mean;
 use super::kin::alone_of_their_kind;
-use super::left::{Left, Smaller, is_as_quiet};
+use super::left::{Left, is_as_quiet};
 use super::lines::lines;
 use super::pool::{Pool, price};
 use super::regression::{Regression, Spoken};
+use super::rounds::{Bounds, fit_sets};
 use super::scale::Scale;
-use super::sets::{Ground, Grown, LinearSet};
+use super::sets::{Ground, Grown};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
@@ -58,7 +58,7 @@ pub struct Tried {
 
 /// Effects at most, and how many the linear model may add at once.
 const MOST: usize = 6;
-const AT_ONCE: usize = 3;
+pub(super) const AT_ONCE: usize = 3;
 /// Share of what the unknown forces do that one more effect has to take; and where less than a hundredth of that is left, which may be what the found
 /// laws are off by themselves.
 pub(super) const FURTHER: [f64; 2] = [0.2, 0.75];
@@ -67,16 +67,6 @@ const SMALL: f64 = 0.01;
 const OWN: f64 = 1e-5;
 /// Share of what the unknown forces do below which nothing is left to add.
 pub const NEXT_TO_NOTHING: f64 = 1e-3;
-/// Sets of the chain that are fitted in full simulation in a round, and how many of all where promises are broken.
-const FITTED: usize = 4;
-const ALL_FITTED: usize = 12;
-/// Places among them at which the most promising law is tried beside its own.
-const SIBLINGS: usize = 2;
-/// Sets of one size among them that the missing force speaks for; of the largest one.
-const SPOKEN: usize = 2;
-/// Share of the best promise below which a set is not fitted, and of its own promise below which it was none.
-const PROMISING: f64 = 0.6;
-const REFUTED: f64 = 0.1;
 /// Iterations of a first fit, and to the end.
 pub(super) const LOOK: Reach = Reach { iterations: 6, reuse: true };
 pub(super) const GLANCE: Reach = Reach { iterations: 3, reuse: true };
@@ -86,8 +76,6 @@ const ENDS: usize = 5;
 const WORTH: f64 = 3.0;
 /// Nominal numbers off by no more than is usual from which on they are taken for small errors of all of them.
 const SEVERAL: usize = 3;
-/// Share of the most that a set gains by which first fits may be short of what they come to.
-const CLOSE: f64 = 0.02;
 /// Criterion by which a set is far from what it was.
 pub(super) const FAR: f64 = 1000.0;
 /// Rise of the likelihood without a joint's unknown force, as a share of the largest, below which nothing is missing there.
@@ -102,56 +90,117 @@ pub fn criterion(fit: &Fitted, many: usize) -> f64 {
 pub fn search(
     problem: &Problem<'_>,
     nominal: Fitted,
-    hypotheses: &dyn Fn(&Fitted) -> Result<Vec<Hypothesis>, DiagnoseError>,
-    mut numbers: Option<EffectSet>,
+    hypotheses: &Hypotheses<'_>,
+    numbers: Option<EffectSet>,
 ) -> Result<Found, DiagnoseError> {
-    let watch = problem.stage.work.watch;
-    let mut now = nominal.clone();
-    let mut found = Found { nominal, best: now.clone(), tried: Vec::new(), shown: Vec::new(), left: 0.0 };
-    let first = hypotheses(&now)?;
-    let (mut known, many) = (first.clone(), first.len());
-    let all = problem.power(&now);
-    let mut refused: Vec<String> = Vec::new();
-    for round in 0..MOST {
-        let room = MOST.saturating_sub(now.set.findings().count());
-        let bare = bare(problem, &now)?;
-        if round > 0 {
-            known = hypotheses(&now)?;
+    let first = hypotheses(&nominal)?;
+    let (many, all) = (first.len(), problem.power(&nominal));
+    let found = Found { nominal: nominal.clone(), best: nominal, tried: Vec::new(), shown: Vec::new(), left: 0.0 };
+    let (known, refused) = (first.clone(), Vec::new());
+    let mut search = Search { problem, hypotheses, many, all, numbers, known, refused, smaller: None, found };
+    let mut now = search.forward(search.found.nominal.clone(), 0)?;
+    // Where the first step was one of several effects at once that lead nowhere, one with fewer of them may be the way.
+    if let Some(smaller) = search.smaller.take().filter(|_| !problem.stage.work.is_spent(Until::Search))
+        && leaves_more_than_noise(problem, &now)?
+    {
+        problem.stage.work.watch.step(&format!("on from {}", names(&smaller.set)));
+        let other = search.forward(smaller, 1)?;
+        if criterion(&other, many) < criterion(&now, many) {
+            now = other;
         }
-        let mut candidates = open(known.clone(), &now, problem, &bare);
-        candidates.retain(|h| !refused.contains(&h.title()));
-        let cheapest = candidates.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
-        let bounds = Bounds { round, many, cheapest, all };
-        // A nominal model that leaves nothing is still asked what these recordings can show.
-        let is_done = round > 0 && (problem.power(&now) < OWN * all || left_of(problem, &now, &bare).rise < cheapest);
-        let next = if round > 0 { corrected(problem, &now, (&mut numbers, is_done), bounds)? } else { None };
-        if let Some(next) = next {
-            now = next;
-            continue;
-        }
-        if room == 0 || is_done || problem.stage.work.is_spent(Until::Search) {
-            break;
-        }
-        let looked = look(problem, &mut now, candidates, room.min(AT_ONCE))?;
-        if round == 0 {
-            (found.shown, found.left) = (shown(&looked.pool, &looked.grown), looked.grown.left);
-        }
-        let best = fit_sets(problem, &now, &looked, bounds, &mut found.tried)?;
-        // What takes little of what an accepted set leaves stands for something that is not in the library.
-        let left_by = |fit: &Fitted| Left { power: problem.power(fit), spread: fit.spread.clone() };
-        let doubt = problem.stage.doubt;
-        let takes_enough = |best: &Fitted| round == 0 || left_by(best).takes_its_part_of(&left_by(&now), all, doubt);
-        let Some(best) = best.filter(takes_enough) else { break };
-        let (alone, gone) = alone_of_their_kind(problem, without_idle(problem, best, (many, all))?, many);
-        now = alone;
-        refused.extend(gone);
-        watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
     }
+    let Search { mut found, mut known, .. } = search;
     // A joint that yields by now is no more one that may begin to, and yet that is what a joint with play becomes.
     known.extend(first);
     let plain = simplified(problem, relaxed(problem, now, many), &known, (many, all))?;
     found.best = exchanged(problem, plain, &found.tried, many)?;
     Ok(found)
+}
+
+/// What could act beside a fit.
+pub type Hypotheses<'a> = dyn Fn(&Fitted) -> Result<Vec<Hypothesis>, DiagnoseError> + 'a;
+
+/// A search on its way.
+struct Search<'a> {
+    problem: &'a Problem<'a>,
+    hypotheses: &'a Hypotheses<'a>,
+    /// Hypotheses beside the nominal model, and what the unknown forces there do.
+    many: usize,
+    all: f64,
+    /// Nominal numbers that were not freed yet.
+    numbers: Option<EffectSet>,
+    /// Hypotheses of the last round, and titles of what is asked no more.
+    known: Vec<Hypothesis>,
+    refused: Vec<String>,
+    /// The best of those with fewer effects than what the first round took.
+    smaller: Option<Fitted>,
+    found: Found,
+}
+
+impl Search<'_> {
+    /// Adds what is worth its price to a fit, round by round.
+    fn forward(&mut self, mut now: Fitted, first: usize) -> Result<Fitted, DiagnoseError> {
+        let Self { problem, many, all, .. } = *self;
+        for round in first..MOST {
+            let room = MOST.saturating_sub(now.set.findings().count());
+            let bare = bare(problem, &now)?;
+            if round > 0 {
+                self.known = (self.hypotheses)(&now)?;
+            }
+            let mut candidates = open(self.known.clone(), &now, problem, &bare);
+            candidates.retain(|h| !self.refused.contains(&h.title()));
+            let cheapest = candidates.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
+            let bounds = Bounds { round, many, cheapest, all };
+            // A nominal model that leaves nothing is still asked what these recordings can show.
+            let is_done =
+                round > 0 && (problem.power(&now) < OWN * all || left_of(problem, &now, &bare).rise < cheapest);
+            let next = if round > 0 { corrected(problem, &now, (&mut self.numbers, is_done), bounds)? } else { None };
+            if let Some(next) = next {
+                now = next;
+                continue;
+            }
+            if room == 0 || is_done || problem.stage.work.is_spent(Until::Search) {
+                break;
+            }
+            let Some(best) = self.further(&mut now, (candidates, room), bounds)? else { break };
+            let best = without_idle(problem, best, (many, all))?;
+            let (alone, gone) = alone_of_their_kind(problem, best, many);
+            now = alone;
+            self.refused.extend(gone);
+            problem.stage.work.watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
+        }
+        Ok(now)
+    }
+
+    /// The best of the sets that a round fits beside a fit, where that takes its part.
+    fn further(
+        &mut self,
+        now: &mut Fitted,
+        (candidates, room): (Vec<Hypothesis>, usize),
+        bounds: Bounds,
+    ) -> Result<Option<Fitted>, DiagnoseError> {
+        let (problem, round) = (self.problem, bounds.round);
+        let looked = look(problem, now, candidates, room.min(AT_ONCE))?;
+        if round == 0 {
+            (self.found.shown, self.found.left) = (shown(&looked.pool, &looked.grown), looked.grown.left);
+        }
+        let Some((best, smaller)) = fit_sets(problem, now, &looked, bounds, &mut self.found.tried)? else {
+            return Ok(None);
+        };
+        if round == 0 {
+            self.smaller = smaller;
+        }
+        // What takes little of what an accepted set leaves stands for something that is not in the library.
+        let left_by = |fit: &Fitted| Left { power: problem.power(fit), spread: fit.spread.clone() };
+        let takes_enough = round == 0 || left_by(&best).takes_its_part_of(&left_by(now), self.all, problem.stage.doubt);
+        Ok(takes_enough.then_some(best))
+    }
+}
+
+/// Whether a fit leaves more than noise and what steps and difference quotients make of its laws.
+fn leaves_more_than_noise(problem: &Problem<'_>, fit: &Fitted) -> Result<bool, DiagnoseError> {
+    let left = remainder(problem, fit)?;
+    Ok(left.rise > left.bound)
 }
 
 /// A fit with many nominal numbers free within what is usual, where those of its findings that are no more than that may stand among them, or where they
@@ -204,124 +253,6 @@ pub(super) fn further(beside: f64, all: f64) -> f64 {
 /// Whether a law takes less than its part of what its plainer kind leaves, of all that there was.
 pub(crate) fn takes_little(rich: f64, plain: f64, all: f64) -> bool {
     rich > (1.0 - further(plain, all).min(FURTHER[1])) * plain
-}
-
-/// What a round of fits goes by.
-#[derive(Clone, Copy)]
-struct Bounds {
-    round: usize,
-    /// Hypotheses.
-    many: usize,
-    /// Price of the cheapest effect.
-    cheapest: f64,
-    /// What the unknown forces beside the nominal model do.
-    all: f64,
-}
-
-/// Fits the sets that promise most in full simulation; the best of them, taken to the end, where it is worth its price.
-fn fit_sets(
-    problem: &Problem<'_>,
-    begun: &Fitted,
-    looked: &Looked,
-    Bounds { round, many, cheapest, all }: Bounds,
-    tried: &mut Vec<Tried>,
-) -> Result<Option<Fitted>, DiagnoseError> {
-    let mut now = begun;
-    let mut finer: Fitted;
-    let (before, here) = (criterion(now, many), problem.power(now));
-    let mut worthy: Vec<(usize, Fitted)> = Vec::new();
-    let mut smaller: Vec<Smaller> = Vec::new();
-    let (pool, watch) = (&looked.pool, problem.stage.work.watch);
-    let [mut done, mut refuted] = [const { Vec::<Vec<String>>::new() }; 2];
-    let mut enough: Vec<Enough> = Vec::new();
-    while let Some(set) = next_of(proposals(looked, now, &refuted), pool, &done) {
-        if done.len() == ALL_FITTED || problem.stage.work.is_spent(Until::Search) {
-            break;
-        }
-        let added: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
-        done.push(pool.titles(set.members.iter().map(|m| m.0)));
-        let costs = pool.price(&set.members.iter().map(|m| m.0).collect::<Vec<_>>(), now.count);
-        if enough.iter().any(|known| known.outdoes(&added, costs)) {
-            continue;
-        }
-        let fit = fit_first(problem, now, &set, pool, (many, here));
-        let Ok((same, fit)) = fit.inspect_err(|error| watch.step(&format!("  {}: {error}", added.join("; ")))) else {
-            refuted.push(added);
-            continue;
-        };
-        if let Some(same) = same {
-            finer = same;
-            now = &finer;
-        }
-        let after = criterion(&fit, many);
-        let (promised, brought) = (now.score - set.score, now.score - fit.score);
-        let left = remainder(problem, &fit)?;
-        let (names, power) = (names(&fit.set), problem.power(&fit));
-        let gains = format!("promised {promised:.1}, brought {brought:.1}, criterion {:.1}", after - before);
-        watch.step(&format!("  {names}: {gains}, {:.3} % left", 100.0 * power / here));
-        if brought < REFUTED * promised {
-            refuted.push(added.clone());
-        }
-        if left.rise < cheapest || power < NEXT_TO_NOTHING * here {
-            enough.push(Enough { titles: added.clone(), limit: costs + left.rise });
-        }
-        // What a set adds to a smaller one has to take its part of what that leaves, or a sensor's fault.
-        let own = Smaller { titles: added.clone(), left: Left { power, spread: fit.spread.clone() } };
-        let is_idle = smaller.iter().any(|known| own.is_idle_beside(known, all, problem.stage.doubt));
-        smaller.push(own);
-        let (scores, taken) = ([now.score, fit.score], (here - power) / all.max(f64::MIN_POSITIVE));
-        tried.push(Tried { round, set: fit.set.clone(), added, scores, criteria: [before, after], promised, taken });
-        if !is_idle && after < before {
-            worthy.push((tried.len() - 1, fit));
-        }
-    }
-    Ok(best_of(problem, worthy, tried, (before, many)))
-}
-
-/// A proposal fitted beside a fit, and that on the same intervals where these are others.
-fn fit_first(
-    problem: &Problem<'_>,
-    now: &Fitted,
-    Proposal { members, spread, .. }: &Proposal,
-    pool: &Pool,
-    (many, here): (usize, f64),
-) -> Result<(Option<Fitted>, Fitted), DiagnoseError> {
-    let begun = Fitted { spread: spread.clone(), ..now.clone() };
-    let set = members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
-    let look =
-        |set: EffectSet| problem.fit(&begun, set, LOOK).map(|fit| but_for_a_detail(problem, now, fit, (many, here)));
-    let first = look(set.clone())?;
-    if criterion(&first.1, many) < criterion(first.0.as_ref().unwrap_or(now), many) {
-        return Ok(first);
-    }
-    // A law that leads astray may do so for what it holds in reserve.
-    let free = set.released().and_then(|free| look(free).ok());
-    Ok(free.filter(|free| criterion(&free.1, many) < criterion(&first.1, many)).unwrap_or(first))
-}
-
-/// The first proposal that was not fitted yet.
-fn next_of(proposals: Vec<Proposal>, pool: &Pool, done: &[Vec<String>]) -> Option<Proposal> {
-    proposals.into_iter().find(|p| !done.contains(&pool.titles(p.members.iter().map(|m| m.0))))
-}
-
-/// The best of some fits, each with its number among those tried; those that are next to as good as it are taken to the end first, and told as they are there.
-fn best_of(
-    problem: &Problem<'_>,
-    worthy: Vec<(usize, Fitted)>,
-    tried: &mut [Tried],
-    (before, many): (f64, usize),
-) -> Option<Fitted> {
-    let gain = |fit: &Fitted| before - criterion(fit, many);
-    let most = worthy.iter().map(|(_, fit)| gain(fit)).reduce(f64::max)?;
-    let close = worthy.into_iter().filter(|(_, fit)| gain(fit) >= most - CLOSE * most.abs());
-    let to_the_end = |(index, fit): (usize, Fitted)| {
-        let fit = to_the_end(problem, fit);
-        let of: &mut Tried = &mut tried[index];
-        of.set.clone_from(&fit.set);
-        (of.scores[1], of.criteria[1]) = (fit.score, criterion(&fit, many));
-        fit
-    };
-    close.map(to_the_end).min_by(|a, b| criterion(a, many).total_cmp(&criterion(b, many)))
 }
 
 /// What a fit leaves beyond noise.
@@ -384,12 +315,12 @@ fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>, bare: &[Chain
 }
 
 /// What the first looks at all hypotheses beside a fit say.
-struct Looked {
-    pool: Pool,
+pub(super) struct Looked {
+    pub(super) pool: Pool,
     /// By the chain.
-    grown: Grown,
+    pub(super) grown: Grown,
     /// By the missing force.
-    spoken: Vec<Spoken>,
+    pub(super) spoken: Vec<Spoken>,
 }
 
 /// Takes all columns beside a fit and grows sets of them.
@@ -416,70 +347,6 @@ fn look(problem: &Problem<'_>, now: &mut Fitted, all: Vec<Hypothesis>, most: usi
     grown.sets.iter_mut().for_each(|s| (s.score, s.criterion) = (s.score - datum, s.criterion - datum));
     watch.step("sets grown");
     Ok(Looked { pool, grown, spoken })
-}
-
-/// A set that is worth a fit.
-struct Proposal {
-    /// Entries of the pool, and coordinates to begin with.
-    members: Vec<(usize, Vec<f64>)>,
-    /// −2 log likelihood that is promised.
-    score: f64,
-    /// Spread to begin with.
-    spread: Spread,
-}
-
-/// The sets that are worth a fit: those that promise most by the criterion, of the chain and of the missing force, smaller ones first. What adds to a
-/// set that brought next to nothing of what it promised promises nothing.
-fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Proposal> {
-    let pool = &looked.pool;
-    let is_open = |members: &[(usize, Vec<f64>)]| {
-        let own = pool.titles(members.iter().map(|m| m.0));
-        !refuted.iter().any(|known| known.iter().all(|t| own.contains(t)))
-    };
-    let sets: Vec<&LinearSet> = looked.grown.sets.iter().filter(|s| is_open(&s.members)).collect();
-    let spoken: Vec<&Spoken> = looked.spoken.iter().filter(|s| is_open(&s.members)).collect();
-    let most = sets.iter().map(|s| now.score - s.score).fold(0.0, f64::max);
-    let loudest = spoken.iter().map(|s| -s.change).fold(0.0, f64::max);
-    let titles = |members: &[(usize, Vec<f64>)]| pool.titles(members.iter().map(|m| m.0));
-    let by_force = (1..=AT_ONCE).flat_map(|size| {
-        let own = spoken.iter().filter(move |s| s.members.len() == size && -s.change >= PROMISING * loudest);
-        own.take(if size < AT_ONCE { SPOKEN } else { 1 })
-    });
-    let by_force = by_force.map(|s| Proposal {
-        members: s.members.clone(),
-        score: now.score + s.change,
-        spread: now.spread.clone(),
-    });
-    let worth = sets.iter().filter(|s| now.score - s.score >= PROMISING * most).take(FITTED);
-    let single = sets.iter().find(|s| s.members.len() == 1);
-    let by_chain =
-        worth.chain(single).map(|s| Proposal { members: s.members.clone(), score: s.score, spread: s.spread.clone() });
-    let siblings = single.map_or_else(Vec::new, |single| siblings(looked, now, single));
-    let mut all: Vec<Proposal> = Vec::new();
-    // What the missing force says of a law is nearer to it where no line follows that.
-    for proposal in by_force.chain(by_chain).chain(siblings.into_iter().filter(|p| is_open(&p.members))) {
-        if !all.iter().any(|known| titles(&known.members) == titles(&proposal.members)) {
-            all.push(proposal);
-        }
-    }
-    all.sort_by_key(|p| p.members.len());
-    all
-}
-
-/// The law of a set of one at the other places that promise as much: there it looks much like it.
-fn siblings(looked: &Looked, now: &Fitted, single: &LinearSet) -> Vec<Proposal> {
-    let Looked { pool, grown, .. } = looked;
-    let own = pool.of(single.members[0].0);
-    let entry = |s: &Score| pool.entries.iter().position(|e| e.hypothesis == s.hypothesis && e.point == s.point);
-    let is_sibling = |s: &&Score| {
-        let of = &pool.hypotheses[s.hypothesis];
-        of.name == own.name && of.place != own.place && s.score >= PROMISING * (now.score - single.score)
-    };
-    let proposal = |s: &Score| {
-        let members = vec![(entry(s)?, s.start.clone())];
-        Some(Proposal { members, score: now.score - s.score, spread: single.spread.clone() })
-    };
-    grown.scores.iter().filter(is_sibling).filter_map(proposal).take(SIBLINGS).collect()
 }
 
 /// A fit that is followed anew as long as that betters it: forces that pushed the runs beside other numbers hold these where they were.
@@ -569,7 +436,7 @@ fn simplified(
 }
 
 /// Members in a line.
-fn names(set: &EffectSet) -> String {
+pub(super) fn names(set: &EffectSet) -> String {
     let found: Vec<String> = set.findings().map(|(h, x)| format!("{} ({})", h.title(), told(h, x))).collect();
     if found.is_empty() { "nothing".to_owned() } else { found.join("; ") }
 }

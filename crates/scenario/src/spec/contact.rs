@@ -35,6 +35,14 @@ pub struct ContactRule {
     pub points: PointRule,
 }
 
+impl ContactRule {
+    /// As the last rule of a scenario: nothing touches.
+    pub fn apart() -> Self {
+        let between = ["*", "*"].map(str::to_owned);
+        Self { between, enabled: false, normal: None, friction: None, grain: None, pivot: None, points: PointRule::All }
+    }
+}
+
 /// Which of a pair's points bear.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

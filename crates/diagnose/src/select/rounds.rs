@@ -1,0 +1,215 @@
+//! One round of a search: the sets that promise most, fitted in full simulation, and the best of them.
+
+use super::detail::but_for_a_detail;
+use super::enough::Enough;
+use super::left::{Left, Smaller};
+use super::pool::Pool;
+use super::regression::Spoken;
+use super::search::{AT_ONCE, LOOK, Looked, NEXT_TO_NOTHING, Tried, criterion, names, remainder, to_the_end};
+use super::sets::LinearSet;
+use crate::error::DiagnoseError;
+use crate::fit::EffectSet;
+use crate::identify::fit::{Fitted, Problem};
+use crate::identify::marginal::Spread;
+use crate::screen::Score;
+use crate::work::Until;
+
+/// Sets of the chain that are fitted in full simulation in a round, and how many of all where promises are broken.
+const FITTED: usize = 4;
+const ALL_FITTED: usize = 12;
+/// Places among them at which the most promising law is tried beside its own.
+const SIBLINGS: usize = 2;
+/// Sets of one size among them that the missing force speaks for; of the largest one.
+const SPOKEN: usize = 2;
+/// Share of the best promise below which a set is not fitted, and of its own promise below which it was none.
+const PROMISING: f64 = 0.6;
+const REFUTED: f64 = 0.1;
+/// Share of the most that a set gains by which first fits may be short of what they come to.
+const CLOSE: f64 = 0.02;
+/// What a round of fits goes by.
+#[derive(Clone, Copy)]
+pub(super) struct Bounds {
+    pub(super) round: usize,
+    /// Hypotheses.
+    pub(super) many: usize,
+    /// Price of the cheapest effect.
+    pub(super) cheapest: f64,
+    /// What the unknown forces beside the nominal model do.
+    pub(super) all: f64,
+}
+
+/// Fits the sets that promise most in full simulation; the best of them, taken to the end, where it is worth its price, and the best of those with fewer effects.
+pub(super) fn fit_sets(
+    problem: &Problem<'_>,
+    begun: &Fitted,
+    looked: &Looked,
+    Bounds { round, many, cheapest, all }: Bounds,
+    tried: &mut Vec<Tried>,
+) -> Result<Option<(Fitted, Option<Fitted>)>, DiagnoseError> {
+    let mut now = begun;
+    let mut finer: Fitted;
+    let (before, here) = (criterion(now, many), problem.power(now));
+    let mut worthy: Vec<(usize, Fitted)> = Vec::new();
+    let mut smaller: Vec<Smaller> = Vec::new();
+    let (pool, watch) = (&looked.pool, problem.stage.work.watch);
+    let [mut done, mut refuted] = [const { Vec::<Vec<String>>::new() }; 2];
+    let mut enough: Vec<Enough> = Vec::new();
+    while let Some(set) = next_of(proposals(looked, now, &refuted), pool, &done) {
+        if done.len() == ALL_FITTED || problem.stage.work.is_spent(Until::Search) {
+            break;
+        }
+        let added: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
+        done.push(pool.titles(set.members.iter().map(|m| m.0)));
+        let costs = pool.price(&set.members.iter().map(|m| m.0).collect::<Vec<_>>(), now.count);
+        if enough.iter().any(|known| known.outdoes(&added, costs)) {
+            continue;
+        }
+        let fit = fit_first(problem, now, &set, pool, (many, here));
+        let Ok((same, fit)) = fit.inspect_err(|error| watch.step(&format!("  {}: {error}", added.join("; ")))) else {
+            refuted.push(added);
+            continue;
+        };
+        if let Some(same) = same {
+            finer = same;
+            now = &finer;
+        }
+        let after = criterion(&fit, many);
+        let (promised, brought) = (now.score - set.score, now.score - fit.score);
+        let left = remainder(problem, &fit)?;
+        let (names, power) = (names(&fit.set), problem.power(&fit));
+        let gains = format!("promised {promised:.1}, brought {brought:.1}, criterion {:.1}", after - before);
+        watch.step(&format!("  {names}: {gains}, {:.3} % left", 100.0 * power / here));
+        if brought < REFUTED * promised {
+            refuted.push(added.clone());
+        }
+        if left.rise < cheapest || power < NEXT_TO_NOTHING * here {
+            enough.push(Enough { titles: added.clone(), limit: costs + left.rise });
+        }
+        // What a set adds to a smaller one has to take its part of what that leaves, or a sensor's fault.
+        let own = Smaller { titles: added.clone(), left: Left { power, spread: fit.spread.clone() } };
+        let is_idle = smaller.iter().any(|known| own.is_idle_beside(known, all, problem.stage.doubt));
+        smaller.push(own);
+        let (scores, taken) = ([now.score, fit.score], (here - power) / all.max(f64::MIN_POSITIVE));
+        tried.push(Tried { round, set: fit.set.clone(), added, scores, criteria: [before, after], promised, taken });
+        if !is_idle && after < before {
+            worthy.push((tried.len() - 1, fit));
+        }
+    }
+    Ok(best_of(problem, worthy, tried, (before, many)))
+}
+
+/// A proposal fitted beside a fit, and that on the same intervals where these are others.
+fn fit_first(
+    problem: &Problem<'_>,
+    now: &Fitted,
+    Proposal { members, spread, .. }: &Proposal,
+    pool: &Pool,
+    (many, here): (usize, f64),
+) -> Result<(Option<Fitted>, Fitted), DiagnoseError> {
+    let begun = Fitted { spread: spread.clone(), ..now.clone() };
+    let set = members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
+    let look =
+        |set: EffectSet| problem.fit(&begun, set, LOOK).map(|fit| but_for_a_detail(problem, now, fit, (many, here)));
+    let first = look(set.clone())?;
+    if criterion(&first.1, many) < criterion(first.0.as_ref().unwrap_or(now), many) {
+        return Ok(first);
+    }
+    // A law that leads astray may do so for what it holds in reserve.
+    let free = set.released().and_then(|free| look(free).ok());
+    Ok(free.filter(|free| criterion(&free.1, many) < criterion(&first.1, many)).unwrap_or(first))
+}
+
+/// The first proposal that was not fitted yet.
+fn next_of(proposals: Vec<Proposal>, pool: &Pool, done: &[Vec<String>]) -> Option<Proposal> {
+    proposals.into_iter().find(|p| !done.contains(&pool.titles(p.members.iter().map(|m| m.0))))
+}
+
+/// The best of some fits, each with its number among those tried; those that are next to as good as it are taken to the end first, and told as they are there.
+/// And the best of those with fewer effects.
+fn best_of(
+    problem: &Problem<'_>,
+    worthy: Vec<(usize, Fitted)>,
+    tried: &mut [Tried],
+    (before, many): (f64, usize),
+) -> Option<(Fitted, Option<Fitted>)> {
+    let gain = |fit: &Fitted| before - criterion(fit, many);
+    let most = worthy.iter().map(|(_, fit)| gain(fit)).reduce(f64::max)?;
+    let known: Vec<Fitted> = worthy.iter().map(|(_, fit)| fit.clone()).collect();
+    let close = worthy.into_iter().filter(|(_, fit)| gain(fit) >= most - CLOSE * most.abs());
+    let to_the_end = |(index, fit): (usize, Fitted)| {
+        let fit = to_the_end(problem, fit);
+        let of: &mut Tried = &mut tried[index];
+        of.set.clone_from(&fit.set);
+        (of.scores[1], of.criteria[1]) = (fit.score, criterion(&fit, many));
+        fit
+    };
+    let best = close.map(to_the_end).min_by(|a, b| criterion(a, many).total_cmp(&criterion(b, many)))?;
+    let of = |fit: &Fitted| fit.set.findings().count();
+    let smaller = known.into_iter().filter(|fit| of(fit) < of(&best));
+    let smaller = smaller.min_by(|a, b| criterion(a, many).total_cmp(&criterion(b, many)));
+    Some((best, smaller))
+}
+
+/// A set that is worth a fit.
+struct Proposal {
+    /// Entries of the pool, and coordinates to begin with.
+    members: Vec<(usize, Vec<f64>)>,
+    /// −2 log likelihood that is promised.
+    score: f64,
+    /// Spread to begin with.
+    spread: Spread,
+}
+
+/// The sets that are worth a fit: those that promise most by the criterion, of the chain and of the missing force, smaller ones first. What adds to a
+/// set that brought next to nothing of what it promised promises nothing.
+fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Proposal> {
+    let pool = &looked.pool;
+    let is_open = |members: &[(usize, Vec<f64>)]| {
+        let own = pool.titles(members.iter().map(|m| m.0));
+        !refuted.iter().any(|known| known.iter().all(|t| own.contains(t)))
+    };
+    let sets: Vec<&LinearSet> = looked.grown.sets.iter().filter(|s| is_open(&s.members)).collect();
+    let spoken: Vec<&Spoken> = looked.spoken.iter().filter(|s| is_open(&s.members)).collect();
+    let most = sets.iter().map(|s| now.score - s.score).fold(0.0, f64::max);
+    let loudest = spoken.iter().map(|s| -s.change).fold(0.0, f64::max);
+    let titles = |members: &[(usize, Vec<f64>)]| pool.titles(members.iter().map(|m| m.0));
+    let by_force = (1..=AT_ONCE).flat_map(|size| {
+        let own = spoken.iter().filter(move |s| s.members.len() == size && -s.change >= PROMISING * loudest);
+        own.take(if size < AT_ONCE { SPOKEN } else { 1 })
+    });
+    let by_force = by_force.map(|s| Proposal {
+        members: s.members.clone(),
+        score: now.score + s.change,
+        spread: now.spread.clone(),
+    });
+    let worth = sets.iter().filter(|s| now.score - s.score >= PROMISING * most).take(FITTED);
+    let single = sets.iter().find(|s| s.members.len() == 1);
+    let by_chain =
+        worth.chain(single).map(|s| Proposal { members: s.members.clone(), score: s.score, spread: s.spread.clone() });
+    let siblings = single.map_or_else(Vec::new, |single| siblings(looked, now, single));
+    let mut all: Vec<Proposal> = Vec::new();
+    // What the missing force says of a law is nearer to it where no line follows that.
+    for proposal in by_force.chain(by_chain).chain(siblings.into_iter().filter(|p| is_open(&p.members))) {
+        if !all.iter().any(|known| titles(&known.members) == titles(&proposal.members)) {
+            all.push(proposal);
+        }
+    }
+    all.sort_by_key(|p| p.members.len());
+    all
+}
+
+/// The law of a set of one at the other places that promise as much: there it looks much like it.
+fn siblings(looked: &Looked, now: &Fitted, single: &LinearSet) -> Vec<Proposal> {
+    let Looked { pool, grown, .. } = looked;
+    let own = pool.of(single.members[0].0);
+    let entry = |s: &Score| pool.entries.iter().position(|e| e.hypothesis == s.hypothesis && e.point == s.point);
+    let is_sibling = |s: &&Score| {
+        let of = &pool.hypotheses[s.hypothesis];
+        of.name == own.name && of.place != own.place && s.score >= PROMISING * (now.score - single.score)
+    };
+    let proposal = |s: &Score| {
+        let members = vec![(entry(s)?, s.start.clone())];
+        Some(Proposal { members, score: now.score - s.score, spread: single.spread.clone() })
+    };
+    grown.scores.iter().filter(is_sibling).filter_map(proposal).take(SIBLINGS).collect()
+}
