@@ -55,10 +55,7 @@ pub(crate) fn find_sure_flights(stage: &Stage<'_>, windows: &Fit) -> Vec<Flight>
         let times = |r: &Reading| r.loud(FELT).filter(|t| (s.span.from..=s.span.to).contains(t)).collect::<Vec<_>>();
         tape.readings.iter().filter(is_felt).flat_map(times).collect::<Vec<f64>>()
     };
-    let closed = |(s, touched): (&Segment, Vec<Span>)| {
-        let first = touched.iter().map(|t| t.from).chain(felt(s)).reduce(f64::min);
-        first.map(|from| Span { from, to: s.span.to }).into_iter().collect()
-    };
+    let closed = |(s, touched): (&Segment, Vec<Span>)| after_first(s.span, &touched, felt(s)).into_iter().collect();
     let touched: Vec<Vec<Span>> = windows.segments.iter().zip(find_touches(stage, windows)).map(closed).collect();
     between(stage, windows, &touched)
 }
@@ -77,17 +74,29 @@ fn between(stage: &Stage<'_>, windows: &Fit, touched: &[Vec<Span>]) -> Vec<Fligh
     for run in runs {
         let of_run = windows.segments.iter().zip(touched).filter(|(s, _)| s.run == run);
         let least = of_run.clone().map(|(s, _)| s.span.to - s.span.from).fold(f64::INFINITY, f64::min);
-        let (mut from, end) = stage.tapes[run].span;
         let closed: Vec<Span> = of_run.flat_map(|(_, touched)| touched.iter().copied()).collect();
-        for touch in closed.iter().chain(std::iter::once(&Span { from: end, to: end })) {
-            if touch.from - from > least {
-                let ends = touch.from < end;
-                let margin = if ends { AHEAD * least } else { 0.0 };
-                let span = Span { from, to: touch.from - margin };
-                flights.push(Flight { run, span, touch: ends.then_some(touch.from) });
-            }
-            from = touch.to + AHEAD * least;
+        flights.extend(of_one_run(run, stage.tapes[run].span, (least, &closed)));
+    }
+    flights
+}
+
+/// What of a window comes after its first touch, seen or felt.
+fn after_first(window: Span, touched: &[Span], felt: Vec<f64>) -> Option<Span> {
+    let first = touched.iter().map(|t| t.from).chain(felt).reduce(f64::min);
+    first.map(|from| Span { from, ..window })
+}
+
+/// The flights of a run that are longer than `least` between what is closed.
+fn of_one_run(run: usize, (begin, end): (f64, f64), (least, closed): (f64, &[Span])) -> Vec<Flight> {
+    let (mut from, mut flights) = (begin, Vec::new());
+    for touch in closed.iter().chain(std::iter::once(&Span { from: end, to: end })) {
+        if touch.from - from > least {
+            let ends = touch.from < end;
+            let margin = if ends { AHEAD * least } else { 0.0 };
+            let span = Span { from, to: touch.from - margin };
+            flights.push(Flight { run, span, touch: ends.then_some(touch.from) });
         }
+        from = touch.to + AHEAD * least;
     }
     flights
 }
@@ -183,6 +192,19 @@ mod tests {
         assert_eq!(spans(2.0), [(0.0, 2.5), (2.5, 5.0)]);
         assert_eq!(spans(4.0), [(0.0, 4.5)]);
         assert_eq!(lengths(0.125, &tapes), [0.125, 0.5, 2.0]);
+    }
+
+    #[test]
+    fn a_window_is_trusted_to_its_first_touch_and_flights_are_what_lies_between() {
+        let span = |from: f64, to: f64| Span { from, to };
+        let window = span(1.0, 2.0);
+        assert_eq!(after_first(window, &[span(1.3, 1.31), span(1.7, 1.8)], vec![1.4]), Some(span(1.3, 2.0)));
+        assert_eq!(after_first(window, &[], vec![1.25, 1.2]), Some(span(1.2, 2.0)));
+        assert_eq!(after_first(window, &[], Vec::new()), None);
+        let flights = of_one_run(3, (0.0, 10.0), (0.5, &[span(1.3, 2.0), span(2.2, 3.0)]));
+        let told: Vec<(f64, f64, Option<f64>)> = flights.iter().map(|f| (f.span.from, f.span.to, f.touch)).collect();
+        assert_eq!(told, [(0.0, 1.29, Some(1.3)), (3.01, 10.0, None)], "0.2 s are too short for one");
+        assert!(flights.iter().all(|f| f.run == 3));
     }
 
     #[test]

@@ -11,12 +11,13 @@ use crate::diagnosis::Rival;
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, Fit};
-use crate::identify::fit::Problem;
+use crate::identify::fit::{Fitted, Problem};
 use crate::identify::track::{Interval, Track};
 use crate::linear::Stage;
 use crate::pace;
 use crate::plant::{Built, Plant};
 use crate::replay::{Pace, SAME, Span};
+use crate::select::search::remainder;
 use crate::standing::Standing;
 use crate::start::Start;
 use crate::stretches::cut;
@@ -102,7 +103,7 @@ fn found_in(
     Ok(Some(Flown { set, attempts, rivals: along::rivals(&course), starts }))
 }
 
-/// Flights as runs, and the steps that suit them; none where too little is left.
+/// Flights as runs, and the steps that suit them; none where too little is left or nothing is missing in them.
 fn flown(
     stage: &Stage<'_>,
     (free, built): (&Plant, &Built),
@@ -116,7 +117,14 @@ fn flown(
     let mut flying = Stage { tapes: &tapes, ..*stage };
     let pace = pace::choose(&flying, built, &segments, free.scenario.integrator.step_s).pace;
     flying.pace = pace;
-    let parts = unbroken(&along::problem(&flying, free, own, Role::Fit))?;
+    let problem = along::problem(&flying, free, own, Role::Fit);
+    let nominal = problem.begin()?;
+    let parts = unbroken(&problem, &nominal);
+    let left = remainder(&problem, &nominal)?;
+    if parts.is_none() && left.rise <= left.bound {
+        stage.work.watch.step("nothing is missing in flight");
+        return Ok(None);
+    }
     let tapes = parts.map(|parts| tapes_of(stage, built, &parts)).unwrap_or(tapes);
     stage.work.watch.step(&format!("{} flights", tapes.len()));
     Ok((!tapes.is_empty()).then_some((tapes, pace)))
@@ -124,8 +132,7 @@ fn flown(
 
 /// Flights without the intervals that no force follows: a touch that the nominal model does not know of, at another place or time, is a jump of rates. None
 /// where all are followed.
-fn unbroken(problem: &Problem<'_>) -> Result<Option<Vec<Flight>>, DiagnoseError> {
-    let nominal = problem.begin()?;
+fn unbroken(problem: &Problem<'_>, nominal: &Fitted) -> Option<Vec<Flight>> {
     let mut parts = Vec::new();
     let mut is_whole = true;
     for (number, track) in nominal.tracks.iter().enumerate() {
@@ -147,7 +154,7 @@ fn unbroken(problem: &Problem<'_>) -> Result<Option<Vec<Flight>>, DiagnoseError>
         let end = problem.stage.tapes[track.run].span.1;
         parts.extend(from.map(|from| Flight { run, span: Span { from, to: end }, touch: None }));
     }
-    Ok((!is_whole).then_some(parts))
+    (!is_whole).then_some(parts)
 }
 
 /// Factor of the noise of an interval from which on no force follows it.

@@ -84,3 +84,23 @@ impl Reading {
         out.iter_mut().zip(&self.axes).for_each(|(r, &axis)| *r = difference[axis] / self.sigma);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_loud_is_so_in_any_component_and_either_sign() {
+        let force = |y: f64| Value::Vector(Vec3::new(0.1, y, 0.0));
+        let reading = Reading {
+            channel: "sensor.probe.force".to_owned(),
+            quantity: Quantity::JointPosition(0),
+            axes: vec![0, 1],
+            sigma: 0.05,
+            times: vec![0.0, 1.0, 2.0, 3.0],
+            values: vec![force(0.0), force(-0.4), force(0.2), force(9.0)],
+            late_s: 0.0,
+        };
+        assert_eq!(reading.loud(6.0).collect::<Vec<_>>(), [1.0, 3.0]);
+    }
+}

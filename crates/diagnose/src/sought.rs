@@ -88,29 +88,47 @@ fn beside_flights(
 ) -> Result<(Standing, Vec<Attempt>), DiagnoseError> {
     let Flown { set, attempts, starts, .. } = flown;
     let with = plant.with(&set.effects());
-    let begun = |segment: &Segment| {
-        let known = starts.iter().find(|s| (s.0, s.1) == (segment.run, segment.span.from));
-        let start = known.map_or_else(|| segment.start.clone(), |s| s.2.clone());
-        Segment { start, columns: None, ..segment.clone() }
+    let begun = |segments: &[Segment]| -> Vec<Segment> {
+        let of = |segment: &Segment| {
+            let known = starts.iter().find(|s| (s.0, s.1) == (segment.run, segment.span.from));
+            let start = known.map_or_else(|| segment.start.clone(), |s| s.2.clone());
+            Segment { start, columns: None, ..segment.clone() }
+        };
+        segments.iter().map(of).collect()
     };
-    let segments = nominal.segments.iter().map(begun).collect();
-    let flying = fit(stage, &with, EffectSet::default(), segments, Effort::STARTS)?;
+    let flying = fit(stage, &with, EffectSet::default(), begun(&nominal.segments), Effort::STARTS)?;
     let said = [nominal, &flying].map(|fit| format!("{:.3}", fit.rms())).join(" → ");
     stage.work.watch.step(&format!("windows with what was found in flight: error {said}"));
-    let (standing, _) = stood(stage, &with, (&flying, window))?;
+    let (mut standing, _) = stood(stage, &with, (&flying, window))?;
+    // A flight as a whole tells its begin better than the window that begins there.
+    standing.whole = follow(stage, &with, EffectSet::default(), &begun(&standing.whole.segments))?;
+    // Where whole runs are near, what they miss may be what the numbers are off by that flights alone have told.
+    if standing.whole.rms() < lost::NEAR {
+        let joint = together(stage, plant, (&standing, &set))?;
+        return search(stage, plant, (joint, attempts), candidates, &LIMITS);
+    }
     let others = |stage: &Stage<'_>, now: &Fit| {
         let mut all = candidates(stage, now)?;
         all.retain(|h| !set.has_finding(h));
         Ok(all)
     };
     let (standing, attempts) = search(stage, &with, (standing, attempts), &others, &LIMITS)?;
+    let joint = together(stage, plant, (&standing, &set))?;
+    search(stage, plant, (joint, attempts), candidates, &LIMITS)
+}
+
+/// What stands beside effects in flight, fitted together with them.
+fn together(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    (standing, flown): (&Standing, &EffectSet),
+) -> Result<Standing, DiagnoseError> {
     let beside = &standing.judge().set;
-    let all = beside.members.iter().fold(set.clone(), |all, (h, x)| all.with(h, x));
+    let all = beside.members.iter().fold(flown.clone(), |all, (h, x)| all.with(h, x));
     let known = standing.of_plant(plant, &all)?;
     let joint = known.refit(stage, plant, all, WHOLE)?;
     stage.work.watch.step(&format!("together with what was found in flight: {}", errors(&joint)));
-    let best = if joint.is_better(&known) { joint } else { known };
-    search(stage, plant, (best, attempts), candidates, &LIMITS)
+    Ok(if joint.is_better(&known) { joint } else { known })
 }
 
 /// The same with the initial states of windows that stand out begun anew: where most are followed it is not the model that loses them.

@@ -267,3 +267,27 @@ fn value_at(part: &[(usize, &Series)], i: usize, orientation: bool) -> Value {
         Value::Vector(Vec3::new(x[0], x[1], x[2]))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_a_run_keeps_its_commands_and_its_number() {
+        let reading = |channel: &str, every: usize| {
+            let times: Vec<f64> = (0..=10).step_by(every).map(|i| 0.1 * i as f64).collect();
+            let values = vec![Value::Vector(Vec3::zeros()); times.len()];
+            let quantity = Quantity::JointPosition(0);
+            Reading { channel: channel.to_owned(), quantity, axes: vec![0], sigma: 1.0, times, values, late_s: 0.0 }
+        };
+        let commands =
+            vec![CommandTape { actuator: 0, what: Commanded::Effort, times: vec![0.0, 0.8], values: vec![1.0, 2.0] }];
+        let readings = vec![reading("a", 1), reading("b", 2), reading("felt", 1)];
+        let whole = Tape { index: 4, ..Tape::assemble(("run", Role::Fit), commands, readings) };
+        let part = whole.within(Span { from: 0.25, to: 0.65 }, |channel| channel != "felt");
+        assert_eq!((part.index, part.commands.len(), part.ticks.len()), (4, 1, 2));
+        let kept: Vec<(&str, usize)> = part.readings.iter().map(|r| (r.channel.as_str(), r.times.len())).collect();
+        assert_eq!(kept, [("a", 4), ("b", 2)]);
+        assert!((part.span.0 - 0.3).abs() < 1e-12 && (part.span.1 - 0.6).abs() < 1e-12);
+    }
+}
