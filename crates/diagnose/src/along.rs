@@ -47,7 +47,7 @@ pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Cour
     let left = remainder(&problem, &nominal)?;
     stage.work.watch.step(&format!("the nominal model leaves {:.1}, noise at most {:.1}", left.rise, left.bound));
     let within = catalogue::within(&Facts::new(&nominal.built, stage.tapes), &plant.scenario.tolerance);
-    if !within.members.is_empty() && left.rise > left.bound {
+    if !within.members.is_empty() && !left.is_noise() {
         nominal = to_the_end(&problem, problem.fit(&nominal, within, WITHIN)?);
         stage.work.watch.step(&format!("numbers within their tolerances: −2 log L {:.1}", nominal.score));
     }

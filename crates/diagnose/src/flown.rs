@@ -81,8 +81,8 @@ fn found_in(
     let course = along::told_by_all_runs(&flying, &free, own, course)?;
     let [before, after] = course.left;
     let best = &course.found.best.set;
-    let is_told = after.rise <= after.bound || after.rise < LEFT * before.rise;
-    if before.rise <= before.bound || !best.has_findings() || !is_told {
+    let is_told = after.is_noise() || after.rise < LEFT * before.rise;
+    if before.is_noise() || !best.has_findings() || !is_told {
         return Ok(None);
     }
     let mut attempts = along::attempts(&course);
@@ -120,8 +120,7 @@ fn flown(
     let problem = along::problem(&flying, free, own, Role::Fit);
     let nominal = problem.begin()?;
     let parts = unbroken(&problem, &nominal);
-    let left = remainder(&problem, &nominal)?;
-    if parts.is_none() && left.rise <= left.bound {
+    if parts.is_none() && remainder(&problem, &nominal)?.is_noise() {
         stage.work.watch.step("nothing is missing in flight");
         return Ok(None);
     }
@@ -133,26 +132,24 @@ fn flown(
 /// Flights without the intervals that no force follows: a touch that the nominal model does not know of, at another place or time, is a jump of rates. None
 /// where all are followed.
 fn unbroken(problem: &Problem<'_>, nominal: &Fitted) -> Option<Vec<Flight>> {
+    let is_followed = |track: usize, k: usize| nominal.spread.local_of(track, k).is_none_or(|l| l.noise.amax() < JUMPS);
     let mut parts = Vec::new();
     let mut is_whole = true;
     for (number, track) in nominal.tracks.iter().enumerate() {
-        let run = problem.stage.tapes[track.run].index;
-        let is_followed = |k: usize| nominal.spread.local_of(number, k).is_none_or(|l| l.noise.amax() < JUMPS);
-        let mut from = None;
-        for (k, interval) in track.intervals.iter().enumerate() {
-            match (is_followed(k), from) {
-                (true, None) => from = Some(interval.span.from),
-                (false, Some(begun)) => {
-                    let end = track.intervals[k.saturating_sub(1)].span.from;
-                    parts.push(Flight { run, span: Span { from: begun, to: end }, touch: None });
-                    (from, is_whole) = (None, false);
-                }
-                (false, None) => is_whole = false,
-                (true, Some(_)) => {}
+        let tape = &problem.stage.tapes[track.run];
+        let all: Vec<usize> = (0..track.intervals.len()).collect();
+        for part in all.chunk_by(|a, b| is_followed(number, *a) == is_followed(number, *b)) {
+            let [first, last] = [part[0], part[part.len() - 1]];
+            if !is_followed(number, first) {
+                is_whole = false;
+                continue;
             }
+            let is_last = last + 1 == all.len();
+            // Next to a jump an interval is left out as well.
+            let to = if is_last { tape.span.1 } else { track.intervals[last].span.from };
+            let span = Span { from: track.intervals[first].span.from, to };
+            parts.push(Flight { run: tape.index, span, touch: None });
         }
-        let end = problem.stage.tapes[track.run].span.1;
-        parts.extend(from.map(|from| Flight { run, span: Span { from, to: end }, touch: None }));
     }
     (!is_whole).then_some(parts)
 }
@@ -163,13 +160,8 @@ const JUMPS: f64 = 5.0;
 /// The scenario with nothing that touches; none where parts are held to each other by other things as well.
 fn without_touches(plant: &Plant) -> Option<Plant> {
     let mut scenario = plant.scenario.clone();
-    if !scenario.mechanisms.is_empty() {
-        return None;
-    }
     scenario.contacts.push(ContactRule::apart());
-    let mut free = Plant::new(scenario);
-    (free.channels, free.drives) = (plant.channels.clone(), plant.drives.clone());
-    Some(free)
+    scenario.mechanisms.is_empty().then(|| plant.of(scenario))
 }
 
 /// Flights as runs, with the readings that tell something there.

@@ -79,11 +79,16 @@ impl Plant {
         Ok(())
     }
 
-    /// The same recording of a scenario that has some more effects.
-    pub fn with(&self, effects: &[Effect]) -> Self {
+    /// The same recording beside another scenario of the same parts.
+    pub fn of(&self, scenario: Scenario) -> Self {
+        Self { scenario, channels: self.channels.clone(), drives: self.drives.clone(), stock: OnceLock::new() }
+    }
+
+    /// The scenario with `effects` added to its own.
+    pub fn with(&self, effects: &[Effect]) -> Scenario {
         let mut scenario = self.scenario.clone();
         scenario.effects.extend(effects.iter().cloned());
-        Self { scenario, channels: self.channels.clone(), drives: self.drives.clone(), stock: OnceLock::new() }
+        scenario
     }
 
     /// What a vector channel (without its component) measures in the nominal model.
@@ -127,8 +132,7 @@ impl Plant {
 
     /// Builds the nominal scenario with `effects` added to its own.
     pub fn build(&self, effects: &[Effect]) -> Result<Built, DiagnoseError> {
-        let mut scenario = self.scenario.clone();
-        scenario.effects.extend(effects.iter().cloned());
+        let scenario = self.with(effects);
         let mission = match self.stock.get() {
             Some(stock) => scenario::build_from(&scenario, stock)?,
             None => scenario::build(&scenario)?,

@@ -323,9 +323,9 @@ fn verdict_along(
     let [before, after] = course.left;
     let [nominal, corrected] = judgement.rms(!follows, |run| found.has_run(run));
     let left = (corrected * corrected - 1.0) / (nominal * nominal - 1.0).max(1e-9);
-    let is_next_to_noise = after.rise <= after.bound || left < NEXT_TO_NOTHING && corrected < RIGHT;
+    let is_next_to_noise = after.is_noise() || left < NEXT_TO_NOTHING && corrected < RIGHT;
     if !found.set.has_findings() {
-        let is_noise = before.rise <= before.bound || is_next_to_noise;
+        let is_noise = before.is_noise() || is_next_to_noise;
         return if is_noise { Verdict::NoMismatch } else { Verdict::Unknown };
     }
     if is_next_to_noise {

@@ -55,13 +55,11 @@ pub(crate) fn seek(
         let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
         Ok(promising(&locate(stage, plant, now, joints)?, hypotheses(&facts)))
     };
-    if let Some(flown) = flown::found(stage, plant, &standing, (&nominal, &own_parts, window)) {
-        let rivals = flown.rivals.clone();
-        let (standing, attempts) = beside_flights(stage, plant, (&nominal, window, flown), &candidates)?;
-        return Ok(Sought { nominal, whole, located, standing, attempts, rivals });
-    }
-    let (standing, attempts) = search(stage, plant, (standing, Vec::new()), &candidates, &LIMITS)?;
-    Ok(Sought { nominal, whole, located, standing, attempts, rivals: Vec::new() })
+    let (rivals, (standing, attempts)) = match flown::found(stage, plant, &standing, (&nominal, &own_parts, window)) {
+        Some(flown) => (flown.rivals.clone(), beside_flights(stage, plant, (&nominal, window, flown), &candidates)?),
+        None => (Vec::new(), search(stage, plant, (standing, Vec::new()), &candidates, &LIMITS)?),
+    };
+    Ok(Sought { nominal, whole, located, standing, attempts, rivals })
 }
 
 /// A model as it stands in windows and over whole runs, with its numbers free within their tolerances; and its whole runs without that.
@@ -87,7 +85,7 @@ fn beside_flights(
     candidates: &Candidates<'_>,
 ) -> Result<(Standing, Vec<Attempt>), DiagnoseError> {
     let Flown { set, attempts, starts, .. } = flown;
-    let with = plant.with(&set.effects());
+    let with = plant.of(plant.with(&set.effects()));
     let begun = |segments: &[Segment]| -> Vec<Segment> {
         let of = |segment: &Segment| {
             let known = starts.iter().find(|s| (s.0, s.1) == (segment.run, segment.span.from));
@@ -102,17 +100,16 @@ fn beside_flights(
     let (mut standing, _) = stood(stage, &with, (&flying, window))?;
     // A flight as a whole tells its begin better than the window that begins there.
     standing.whole = follow(stage, &with, EffectSet::default(), &begun(&standing.whole.segments))?;
-    // Where whole runs are near, what they miss may be what the numbers are off by that flights alone have told.
-    if standing.whole.rms() < lost::NEAR {
-        let joint = together(stage, plant, (&standing, &set))?;
-        return search(stage, plant, (joint, attempts), candidates, &LIMITS);
-    }
     let others = |stage: &Stage<'_>, now: &Fit| {
         let mut all = candidates(stage, now)?;
         all.retain(|h| !set.has_finding(h));
         Ok(all)
     };
-    let (standing, attempts) = search(stage, &with, (standing, attempts), &others, &LIMITS)?;
+    // Where whole runs are near, what they miss may be what the numbers are off by that flights alone have told.
+    let (standing, attempts) = match standing.whole.rms() < lost::NEAR {
+        true => (standing, attempts),
+        false => search(stage, &with, (standing, attempts), &others, &LIMITS)?,
+    };
     let joint = together(stage, plant, (&standing, &set))?;
     search(stage, plant, (joint, attempts), candidates, &LIMITS)
 }

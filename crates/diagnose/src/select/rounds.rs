@@ -26,9 +26,11 @@ const PROMISING: f64 = 0.6;
 const REFUTED: f64 = 0.1;
 /// Share of the most that a set gains by which first fits may be short of what they come to.
 const CLOSE: f64 = 0.02;
+
 /// What a round of fits goes by.
 #[derive(Clone, Copy)]
 pub(super) struct Bounds {
+    /// Its number.
     pub(super) round: usize,
     /// Hypotheses.
     pub(super) many: usize,
@@ -134,19 +136,19 @@ fn best_of(
 ) -> Option<(Fitted, Option<Fitted>)> {
     let gain = |fit: &Fitted| before - criterion(fit, many);
     let most = worthy.iter().map(|(_, fit)| gain(fit)).reduce(f64::max)?;
-    let known: Vec<Fitted> = worthy.iter().map(|(_, fit)| fit.clone()).collect();
-    let close = worthy.into_iter().filter(|(_, fit)| gain(fit) >= most - CLOSE * most.abs());
-    let to_the_end = |(index, fit): (usize, Fitted)| {
-        let fit = to_the_end(problem, fit);
-        let of: &mut Tried = &mut tried[index];
+    let close = worthy.iter().filter(|(_, fit)| gain(fit) >= most - CLOSE * most.abs());
+    let to_the_end = |(index, fit): &(usize, Fitted)| {
+        let fit = to_the_end(problem, fit.clone());
+        let of: &mut Tried = &mut tried[*index];
         of.set.clone_from(&fit.set);
         (of.scores[1], of.criteria[1]) = (fit.score, criterion(&fit, many));
         fit
     };
-    let best = close.map(to_the_end).min_by(|a, b| criterion(a, many).total_cmp(&criterion(b, many)))?;
-    let of = |fit: &Fitted| fit.set.findings().count();
-    let smaller = known.into_iter().filter(|fit| of(fit) < of(&best));
-    let smaller = smaller.min_by(|a, b| criterion(a, many).total_cmp(&criterion(b, many)));
+    let by_criterion = |a: &Fitted, b: &Fitted| criterion(a, many).total_cmp(&criterion(b, many));
+    let best = close.map(to_the_end).min_by(by_criterion)?;
+    let effects = |fit: &Fitted| fit.set.findings().count();
+    let smaller = worthy.into_iter().map(|(_, fit)| fit).filter(|fit| effects(fit) < effects(&best));
+    let smaller = smaller.min_by(by_criterion);
     Some((best, smaller))
 }
 

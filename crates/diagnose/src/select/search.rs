@@ -101,7 +101,7 @@ pub fn search(
     let mut now = search.forward(search.found.nominal.clone(), 0)?;
     // Where the first step was one of several effects at once that lead nowhere, one with fewer of them may be the way.
     if let Some(smaller) = search.smaller.take().filter(|_| !problem.stage.work.is_spent(Until::Search))
-        && leaves_more_than_noise(problem, &now)?
+        && !remainder(problem, &now)?.is_noise()
     {
         problem.stage.work.watch.step(&format!("on from {}", names(&smaller.set)));
         let other = search.forward(smaller, 1)?;
@@ -197,12 +197,6 @@ impl Search<'_> {
     }
 }
 
-/// Whether a fit leaves more than noise and what steps and difference quotients make of its laws.
-fn leaves_more_than_noise(problem: &Problem<'_>, fit: &Fitted) -> Result<bool, DiagnoseError> {
-    let left = remainder(problem, fit)?;
-    Ok(left.rise > left.bound)
-}
-
 /// A fit with many nominal numbers free within what is usual, where those of its findings that are no more than that may stand among them, or where they
 /// take most of what is left: small errors of all numbers together look like no single effect. Tried as long as there are `numbers`.
 fn corrected(
@@ -262,6 +256,13 @@ pub struct Remainder {
     pub rise: f64,
     /// What noise alone exceeds with a probability of one in a hundred.
     pub bound: f64,
+}
+
+impl Remainder {
+    /// Whether noise alone may leave as much.
+    pub fn is_noise(&self) -> bool {
+        self.rise <= self.bound
+    }
 }
 
 /// Likelihood ratio of unknown forces and further noise.
@@ -422,7 +423,7 @@ fn simplified(
             let [rich, poor] = [&now, &tried].map(|fit| problem.power(fit));
             let is_idle = || -> Result<bool, DiagnoseError> {
                 let left = remainder(problem, &now)?;
-                Ok(left.rise > left.bound && takes_little(rich, poor, all))
+                Ok(!left.is_noise() && takes_little(rich, poor, all))
             };
             let said = format!("  {} instead costs {costs:.1}, leaves {:.3} times as much", plain.title(), poor / rich);
             problem.stage.work.watch.step(&said);
