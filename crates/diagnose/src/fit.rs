@@ -150,6 +150,19 @@ impl EffectSet {
         Self { held: self.slots().into_iter().chain(self.held.iter().copied()).collect(), ..self.clone() }
     }
 
+    /// The same members a share of the way here from where another set has them, or from where they change nothing.
+    pub(crate) fn a_share_of_the_way(&self, from: &Self, share: f64) -> Self {
+        let mut set = self.clone();
+        for (h, x) in &mut set.members {
+            let known = from.members.iter().find(|(of, known)| of.title() == h.title() && known.len() == x.len());
+            let begin = known.map_or_else(|| h.neutral(), |(_, known)| known.clone());
+            for (x, begin) in x.iter_mut().zip(begin).filter(|(_, b)| b.is_finite()) {
+                *x = begin + share * (*x - begin);
+            }
+        }
+        set
+    }
+
     pub(crate) fn moved(&self, slots: &[(usize, usize)], by: &[f64]) -> Self {
         let mut set = self.clone();
         for ((m, k), d) in slots.iter().zip(by) {

@@ -2,6 +2,7 @@
 //!
 //! A start holds poses, twists, joints, the memory of effects, and the bristles of points that touch. Its tangent has, in this order and as far as each
 //! is free: turn of each base (rotation vector, W axes), place of its origin, spin, speed; joint coordinates; joint rates; memory of effects.
+//! A turned base keeps its spin in its own axes: what a gyro reads does not hang on an attitude that nothing reads.
 
 use crate::plant::Built;
 use friction::Friction;
@@ -41,7 +42,7 @@ pub struct Start {
 /// One free coordinate of a start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freedom {
-    /// Rotation of a base about an axis of W.
+    /// Rotation of a base, and of its spin with it, about an axis of W.
     Turn(usize, usize),
     /// Place of a base's origin along an axis of W.
     Place(usize, usize),
@@ -294,11 +295,11 @@ impl Start {
 
     /// What has to be added to another start, coordinate by coordinate, to come to this one.
     pub fn difference(&self, other: &Self, freedoms: &[Freedom]) -> Vec<f64> {
-        let turn = |b: usize| spatial::log_rotation(&(self.bases[b].rotation * other.bases[b].rotation.inverse()));
+        let turn = |b: usize| self.bases[b].rotation * other.bases[b].rotation.inverse();
         let of = |freedom: &Freedom| match *freedom {
-            Freedom::Turn(b, axis) => turn(b)[axis],
+            Freedom::Turn(b, axis) => spatial::log_rotation(&turn(b))[axis],
             Freedom::Place(b, axis) => self.bases[b].translation.vector[axis] - other.bases[b].translation.vector[axis],
-            Freedom::Spin(b, axis) => self.twists[b].ang[axis] - other.twists[b].ang[axis],
+            Freedom::Spin(b, axis) => (self.twists[b].ang - turn(b) * other.twists[b].ang)[axis],
             Freedom::Speed(b, axis) => self.twists[b].lin[axis] - other.twists[b].lin[axis],
             Freedom::Joint(i) => self.q[i] - other.q[i],
             Freedom::Rate(i) => self.v[i] - other.v[i],
@@ -311,7 +312,11 @@ impl Start {
     fn shift(&mut self, freedom: Freedom, by: f64) {
         let along = |axis: usize| Vec3::ith(axis, by);
         match freedom {
-            Freedom::Turn(b, axis) => self.bases[b].rotation = exp_rotation(&along(axis)) * self.bases[b].rotation,
+            Freedom::Turn(b, axis) => {
+                let turn = exp_rotation(&along(axis));
+                self.bases[b].rotation = turn * self.bases[b].rotation;
+                self.twists[b].ang = turn * self.twists[b].ang;
+            }
             Freedom::Place(b, axis) => self.bases[b].translation.vector += along(axis),
             Freedom::Spin(b, axis) => self.twists[b].ang += along(axis),
             Freedom::Speed(b, axis) => self.twists[b].lin += along(axis),

@@ -93,6 +93,8 @@ pub struct Reach {
 /// Intervals of a run, and samples of its sparsest reading that each has.
 const KNOTS: std::ops::RangeInclusive<usize> = 24..=48;
 const SAMPLES: usize = 12;
+/// How many times as many intervals as the shortest run another one has at most.
+const LONGER: usize = 32;
 /// How many times as many a run has where a replay leaves the range of numbers, one after the other.
 const SHORTER: [usize; 2] = [2, 4];
 /// Promised fall of −2 log likelihood below which a fit has converged.
@@ -187,7 +189,11 @@ impl<'a> Problem<'a> {
     fn begun_in(&self, knots: usize) -> Result<Fitted, DiagnoseError> {
         let set = EffectSet::default();
         let built = self.plant.build(&[])?;
-        let cut = |run: &usize| Track::cut((&self.stage, &self.coarse), (&built, self.forces.len()), *run, knots);
+        let length = |run: usize| self.stage.tapes[run].span.1 - self.stage.tapes[run].span.0;
+        let shortest = self.runs.iter().map(|r| length(*r)).fold(f64::INFINITY, f64::min);
+        // Of runs of unlike length the longer ones have more intervals, not longer ones: how far a model is followed from a state is a time.
+        let count = |run: usize| knots * ((length(run) / shortest) as usize).clamp(1, LONGER);
+        let cut = |run: &usize| Track::cut((&self.stage, &self.coarse), (&built, self.forces.len()), *run, count(*run));
         let tracks: Vec<Track> = self.runs.par_iter().map(cut).collect::<Result<_, _>>()?;
         let freedoms = coordinates(&built, &tracks[0].intervals[0].start);
         let frame = Frame {
@@ -305,7 +311,7 @@ impl<'a> Problem<'a> {
 
     /// A set fitted, from where another one stands.
     pub fn fit(&self, from: &Fitted, set: EffectSet, reach: Reach) -> Result<Fitted, DiagnoseError> {
-        let mut now = self.with(from, set)?;
+        let mut now = self.with(from, self.possible(from, set)?)?;
         // To the end a fit begins by following the runs anew: what memory an effect has in them may have been found beside other numbers.
         if !reach.reuse || now.set.titles() != from.set.titles() {
             now = self.followed(from, now)?;
@@ -321,14 +327,10 @@ impl<'a> Problem<'a> {
         let mut before: Option<Fitted> = None;
         let mut halved = 0i32;
         for iteration in 0..reach.iterations {
-            let variations = vary(self.plant, &now.set, &slots, &sizes)?;
-            let made = self.linearise(&mut now, &variations, reach.reuse || iteration > 0)?;
-            let ridge = ridge_of(&now.set, slots.len());
-            // Which intervals are not followed is another question each time.
-            let before_it = now.spread.without_local_noise();
-            let here = estimate(&made.chains(&[]), None, &before_it, if iteration == 0 { STEPS[0] } else { STEPS[1] });
-            let score = here.score + now.set.prior_cost() - now.datum;
-            if let Some(last) = before.as_ref().filter(|b| score.is_nan() || score > b.score + CONVERGED) {
+            let steps = if iteration == 0 { STEPS[0] } else { STEPS[1] };
+            let here = self.here(&mut now, (&slots, &sizes), (reach.reuse || iteration > 0, steps));
+            let is_worse = |b: &Fitted| here.as_ref().map_or(true, |h| h.2.is_nan() || h.2 > b.score + CONVERGED);
+            if let Some(last) = before.as_ref().filter(|b| is_worse(b)) {
                 if halved >= HALVINGS {
                     return Ok(Fitted { converged: false, ..last.clone() });
                 }
@@ -336,6 +338,8 @@ impl<'a> Problem<'a> {
                 now = self.between(last, &now, NEARER.powi(halved))?;
                 continue;
             }
+            let (made, here, score) = here?;
+            let ridge = ridge_of(&now.set, slots.len());
             let chains = made.chains(&(0..slots.len()).collect::<Vec<_>>());
             let found = estimate(&chains, Some(&ridge), &here.spread, STEPS[1]);
             (now.score, now.cost, now.count) = (score, here.cost, made.count);
@@ -349,7 +353,7 @@ impl<'a> Problem<'a> {
             }
             halved = 0;
             before = Some(now.clone());
-            let set = now.set.moved(&slots, found.theta.as_slice());
+            let set = self.possible(&now, now.set.moved(&slots, found.theta.as_slice()))?;
             let tracks = self.moved(&now, &chains, &found);
             now = Fitted { tracks, spread: found.spread, ..self.with(&now, set)? };
         }
@@ -357,6 +361,30 @@ impl<'a> Problem<'a> {
             Some(last) if now.score.is_nan() || now.score > last.score + CONVERGED => Ok(last),
             _ => Ok(now),
         }
+    }
+
+    /// A set made linear where it stands, with the spread that is likeliest there, and its score.
+    fn here(
+        &self,
+        now: &mut Fitted,
+        (slots, sizes): (&[(usize, usize)], &[f64]),
+        (reuse, steps): (bool, usize),
+    ) -> Result<(Made, Estimate, f64), DiagnoseError> {
+        let variations = vary(self.plant, &now.set, slots, sizes)?;
+        let made = self.linearise(now, &variations, reuse)?;
+        // Which intervals are not followed is another question each time.
+        let here = estimate(&made.chains(&[]), None, &now.spread.without_local_noise(), steps);
+        let score = here.score + now.set.prior_cost() - now.datum;
+        Ok((made, here, score))
+    }
+
+    /// A set, or the largest share of the way to it from another one, or from what changes nothing, that is a model: a linear step knows nothing of what a
+    /// body can be.
+    fn possible(&self, from: &Fitted, set: EffectSet) -> Result<EffectSet, DiagnoseError> {
+        let Err(error) = self.plant.build(&set.effects()) else { return Ok(set) };
+        let shares = (1..=HALVINGS).map(|k| NEARER.powi(k));
+        let mut nearer = shares.map(|share| set.a_share_of_the_way(&from.set, share));
+        nearer.find(|near| self.plant.build(&near.effects()).is_ok()).ok_or(error)
     }
 
     /// The runs of another fit followed by a model: with the derivatives that are known, and with its own where those lead astray.

@@ -244,6 +244,17 @@ impl Frame<'_> {
         Some(answer)
     }
 
+    /// What an interval reads of unknown forces in a model that differs in how it is read: ∂r/∂f.
+    pub fn read_of_forces(&self, built: &Built, run: usize, interval: &Interval) -> Option<DMatrix<f64>> {
+        let own = self.glance(built, run, interval, &interval.start)?.0;
+        let read = |(j, force): (usize, &Force)| {
+            let pushed = self.glance(built, run, &interval.pushed(j, force.size), &interval.start)?.0;
+            Some((pushed - &own) / force.size)
+        };
+        let columns: Option<Vec<DVector<f64>>> = self.forces.iter().enumerate().map(read).collect();
+        columns.filter(|c| !c.is_empty()).map(|c| DMatrix::from_columns(&c))
+    }
+
     /// Whether both ends of a difference quotient are models without corners: else both are replayed as they are judged.
     fn is_smooth_with(&self, variation: &Variation) -> bool {
         self.built.model.is_smooth() && variation.built.model.is_smooth()
