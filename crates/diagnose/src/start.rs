@@ -46,7 +46,7 @@ pub enum Freedom {
     Turn(usize, usize),
     /// Place of a base's origin along an axis of W.
     Place(usize, usize),
-    /// Angular velocity of a base.
+    /// Angular velocity of a base about one of its own axes.
     Spin(usize, usize),
     /// Velocity of a base's origin.
     Speed(usize, usize),
@@ -299,7 +299,7 @@ impl Start {
         let of = |freedom: &Freedom| match *freedom {
             Freedom::Turn(b, axis) => spatial::log_rotation(&turn(b))[axis],
             Freedom::Place(b, axis) => self.bases[b].translation.vector[axis] - other.bases[b].translation.vector[axis],
-            Freedom::Spin(b, axis) => (self.twists[b].ang - turn(b) * other.twists[b].ang)[axis],
+            Freedom::Spin(b, axis) => (self.spin(b) - other.spin(b))[axis],
             Freedom::Speed(b, axis) => self.twists[b].lin[axis] - other.twists[b].lin[axis],
             Freedom::Joint(i) => self.q[i] - other.q[i],
             Freedom::Rate(i) => self.v[i] - other.v[i],
@@ -307,6 +307,11 @@ impl Start {
             Freedom::Bristle(i, axis) => self.bristles[i][axis] - other.bristles[i][axis],
         };
         freedoms.iter().map(of).collect()
+    }
+
+    /// Angular velocity of a base in its own axes.
+    fn spin(&self, base: usize) -> Vec3 {
+        self.bases[base].rotation.inverse() * self.twists[base].ang
     }
 
     fn shift(&mut self, freedom: Freedom, by: f64) {
@@ -318,7 +323,7 @@ impl Start {
                 self.twists[b].ang = turn * self.twists[b].ang;
             }
             Freedom::Place(b, axis) => self.bases[b].translation.vector += along(axis),
-            Freedom::Spin(b, axis) => self.twists[b].ang += along(axis),
+            Freedom::Spin(b, axis) => self.twists[b].ang += self.bases[b].rotation * along(axis),
             Freedom::Speed(b, axis) => self.twists[b].lin += along(axis),
             Freedom::Joint(i) => self.q[i] += by,
             Freedom::Rate(i) => self.v[i] += by,

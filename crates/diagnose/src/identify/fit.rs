@@ -7,7 +7,8 @@
 use super::coarse::{self, Coarse};
 use super::forces::{Force, first_spread, forces};
 use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor, score};
-use super::track::{Bases, Column, Frame, Link, Side, Source, Told, Track, coordinates};
+use super::shown::shown;
+use super::track::{Bases, Column, Frame, Interval, Link, Side, Source, Told, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
@@ -140,13 +141,20 @@ impl<'a> Problem<'a> {
 
     /// What a fit's runs are made linear about and by.
     pub fn frame<'f>(&'f self, of: &'f Fitted) -> Frame<'f> {
-        Frame {
-            stage: &self.stage,
-            coarse: &self.coarse,
-            built: &of.built,
-            freedoms: &of.freedoms,
-            forces: &self.forces,
-        }
+        self.frame_of(&of.built, &of.freedoms)
+    }
+
+    fn frame_of<'f>(&'f self, built: &'f Built, freedoms: &'f [Freedom]) -> Frame<'f> {
+        Frame { stage: &self.stage, coarse: &self.coarse, built, freedoms, forces: &self.forces }
+    }
+
+    /// Coordinates of a model's states that show in some run.
+    fn coordinates(&self, built: &Built, track: &Track) -> Vec<Freedom> {
+        let interval = &track.intervals[track.intervals.len() / 2];
+        let start = interval.start.fitted_to(built);
+        let all = coordinates(built, &start);
+        let readings = || self.stage.tapes.iter().flat_map(|t| &t.readings);
+        shown(&self.frame_of(built, &all), readings, (track.run, &Interval { start, ..interval.clone() }))
     }
 
     /// Variances that are estimated.
@@ -195,18 +203,12 @@ impl<'a> Problem<'a> {
         let count = |run: usize| knots * ((length(run) / shortest) as usize).clamp(1, LONGER);
         let cut = |run: &usize| Track::cut((&self.stage, &self.coarse), (&built, self.forces.len()), *run, count(*run));
         let tracks: Vec<Track> = self.runs.par_iter().map(cut).collect::<Result<_, _>>()?;
-        let freedoms = coordinates(&built, &tracks[0].intervals[0].start);
-        let frame = Frame {
-            stage: &self.stage,
-            coarse: &self.coarse,
-            built: &built,
-            freedoms: &freedoms,
-            forces: &self.forces,
-        };
+        let freedoms = self.coordinates(&built, &tracks[0]);
+        let frame = self.frame_of(&built, &freedoms);
         let typical = frame.link(tracks[0].run, &tracks[0].intervals[knots / 2]).ok_or_else(|| self.lost())?;
         let step = |w: &[super::track::Interval]| DVector::from_vec(w[1].start.difference(&w[0].start, &freedoms));
         let steps: Vec<DVector<f64>> = tracks.iter().flat_map(|t| t.intervals.windows(2).map(step)).collect();
-        let force = first_spread(&freedoms, &steps, &typical.b);
+        let force = first_spread(&freedoms, &self.forces, &steps, &typical.b);
         let spread = Spread { force, ..Spread::steady(self.forces.len(), self.channels.len().max(1)) };
         let shown = |k: usize| (UNKNOWN / typical.s.column(k).norm()).min(LARGEST);
         let first = |k: usize| freedoms[k].largest(&built).unwrap_or_else(|| shown(k));
@@ -450,7 +452,7 @@ impl<'a> Problem<'a> {
     /// Another set at the states of a fit.
     fn with(&self, from: &Fitted, set: EffectSet) -> Result<Fitted, DiagnoseError> {
         let built = self.plant.build(&set.effects())?;
-        let freedoms = coordinates(&built, &from.tracks[0].intervals[0].start.fitted_to(&built));
+        let freedoms = self.coordinates(&built, &from.tracks[0]);
         let is_same = freedoms == from.freedoms;
         let first = |f: &Freedom| {
             let known = || from.freedoms.iter().position(|g| g == f).map(|k| from.first[k]);

@@ -80,12 +80,23 @@ fn at<T: Clone + Default>(all: &mut Vec<T>, index: usize) -> &mut T {
     &mut all[index]
 }
 
-/// Forces that would by themselves move the rates as these move from interval to interval: beyond them nothing is unknown. `steps`: changes
+/// Rate that a small force leaves, rad/s or m/s, below which it moves nothing that shows.
+const UNMOVED: f64 = 1e-12;
+
+/// Forces that would by themselves move the rates as these move from interval to interval: beyond them nothing is unknown; none where it moves nothing. `steps`: changes
 /// of the state over an interval; `b`: ∂end/∂f of a typical one.
-pub fn first_spread(freedoms: &[Freedom], steps: &[DVector<f64>], b: &DMatrix<f64>) -> DVector<f64> {
+pub fn first_spread(
+    freedoms: &[Freedom],
+    forces: &[Force],
+    steps: &[DVector<f64>],
+    b: &DMatrix<f64>,
+) -> DVector<f64> {
     let rates: Vec<usize> = (0..freedoms.len()).filter(|k| freedoms[*k].is_rate()).collect();
     let of = |j: usize| {
         let column = DVector::from_iterator(rates.len(), rates.iter().map(|k| b[(*k, j)]));
+        if column.norm() * forces[j].size < UNMOVED {
+            return 0.0;
+        }
         let along = |step: &DVector<f64>| rates.iter().zip(column.iter()).map(|(k, b)| step[*k] * b).sum::<f64>();
         let square: f64 = steps.iter().map(|s| along(s).powi(2)).sum::<f64>() / steps.len().max(1) as f64;
         square.sqrt() / column.norm_squared().max(f64::MIN_POSITIVE)

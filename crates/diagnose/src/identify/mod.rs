@@ -11,4 +11,5 @@ pub mod forces;
 mod halve;
 pub mod marginal;
 mod power;
+mod shown;
 pub mod track;

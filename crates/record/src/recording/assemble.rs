@@ -70,15 +70,10 @@ fn add_file(
     set.remarks.extend(table.remarks.iter().cloned().map(|remark| remark.of_run(&entry.file)));
     let numbered = manifest.runs.iter().enumerate().filter(|(_, other)| other.file == entry.file);
     let (numbers, entries): (Vec<usize>, Vec<&RunEntry>) = numbered.unzip();
-    let (all, (owner, left)) = if entry.span.is_some() {
-        (group::spans(manifest, &entries, (table, &times))?, ((0..entries.len()).collect(), None))
-    } else {
-        let all = group::stretches(table, entry, manifest.group.as_deref());
-        let chosen = group::choose(manifest, &entries, &all)?;
-        (all, chosen)
-    };
+    let all = group::stretches(table, entry, manifest.group.as_deref());
+    let (chosen, left) = group::choose(manifest, &entries, (&all, &times))?;
     set.remarks.extend(left.map(|remark| remark.of_run(&entry.file)));
-    for (stretch, owner) in all.into_iter().zip(owner).filter(|(_, owner)| *owner != usize::MAX) {
+    for (stretch, owner) in chosen {
         let series = read_stretch(set, manifest, table, (&stretch, &times), &sources)?;
         let RunEntry { role, note, .. } = entries[owner];
         runs.push((numbers[owner], RecordedRun { file: stretch.name, role: *role, note: note.clone(), series }));

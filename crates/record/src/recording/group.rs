@@ -39,58 +39,68 @@ pub(super) fn stretches(table: &Table, entry: &RunEntry, group: Option<&str>) ->
     all
 }
 
-/// The spans of time that the entries of one file ask for, an entry each.
-pub(super) fn spans(
+/// The rows of a stretch within the span of time that an entry asks for.
+fn cut(
     manifest: &Manifest,
-    entries: &[&RunEntry],
-    (table, times): (&Table, &[f64]),
-) -> Result<Vec<Stretch>, RecordError> {
-    let one = |entry: &&RunEntry| {
-        let Some([from, to]) = entry.span else {
-            return Ok(Stretch { name: entry.file.clone(), value: String::new(), rows: 0..table.places.len() });
-        };
-        let is_in = |t: &f64| (from..to).contains(t);
-        let (first, last) = (times.iter().position(is_in), times.iter().rposition(is_in));
-        let Some((first, last)) = first.zip(last) else {
-            let ends = times.first().zip(times.last()).map(|(a, b)| format!("; it goes from {a} to {b} s"));
-            let problem =
-                format!("[[run]] of {}: no row from {from} to {to} s{}", entry.file, ends.unwrap_or_default());
-            return Err(RecordError::table(&manifest.path, problem));
-        };
-        let [from, to] = [times[first], times[last]];
-        Ok(Stretch { name: format!("{}#{from}-{to}s", entry.file), value: String::new(), rows: first..last + 1 })
+    entry: &RunEntry,
+    stretch: &Stretch,
+    (times, is_alone): (&[f64], bool),
+) -> Result<Stretch, RecordError> {
+    let Some([from, to]) = entry.span else { return Ok(stretch.clone()) };
+    let is_in = |t: &f64| (from..to).contains(t);
+    let own = &times[stretch.rows.clone()];
+    let (first, last) = (own.iter().position(is_in), own.iter().rposition(is_in));
+    let Some((first, last)) = first.zip(last) else {
+        let ends = own.first().zip(own.last()).map(|(a, b)| format!("; it goes from {a} to {b} s"));
+        let problem = format!("[[run]] of {}: no row from {from} to {to} s{}", stretch.name, ends.unwrap_or_default());
+        return Err(RecordError::table(&manifest.path, problem));
     };
-    entries.iter().map(one).collect()
+    let [from, to] = [own[first], own[last]];
+    let name = if is_alone { stretch.name.clone() } else { format!("{}#{from}-{to}s", stretch.name) };
+    let begin = stretch.rows.start;
+    Ok(Stretch { name, value: stretch.value.clone(), rows: begin + first..begin + last + 1 })
 }
 
-/// Which stretches of one file belong to which of its entries.
+/// The runs of one file, each with its entry: stretches, or what their entries cut out of them.
 pub(super) fn choose(
     manifest: &Manifest,
     entries: &[&RunEntry],
-    all: &[Stretch],
-) -> Result<(Vec<usize>, Option<Remark>), RecordError> {
-    let mut owner = vec![usize::MAX; all.len()];
+    (all, times): (&[Stretch], &[f64]),
+) -> Result<(Vec<(Stretch, usize)>, Option<Remark>), RecordError> {
+    let mut chosen: Vec<(usize, usize)> = Vec::new();
     for (e, entry) in entries.iter().enumerate() {
-        let mut found = 0;
-        for (stretch, owner) in all.iter().zip(&mut owner).filter(|(s, _)| belongs(entry, &s.value)) {
-            if *owner != usize::MAX {
-                let problem = format!("two [[run]] claim {}; give each its own groups = [\"0-99\", …]", stretch.name);
+        let own = (0..all.len()).filter(|s| belongs(entry, &all[*s].value));
+        let before = chosen.len();
+        for s in own {
+            if chosen.iter().any(|(of, other)| *of == s && overlap(entries[*other], entry)) {
+                let problem = format!("two [[run]] claim {}; give each its own groups = [\"0-99\", …]", all[s].name);
                 return Err(RecordError::table(&manifest.path, problem));
             }
-            *owner = e;
-            found += 1;
+            chosen.push((s, e));
         }
-        if found == 0 {
+        if chosen.len() == before {
             let values = listed(all.iter().map(|s| s.value.as_str()));
             let problem =
                 format!("[[run]] of {} chooses groups that the file does not have; it has {values}", entry.file);
             return Err(RecordError::table(&manifest.path, problem));
         }
     }
-    let left: Vec<&str> = all.iter().zip(&owner).filter(|(_, o)| **o == usize::MAX).map(|(s, _)| &*s.value).collect();
+    chosen.sort_by_key(|(s, _)| *s);
+    let is_chosen = |s: usize| chosen.iter().any(|(of, _)| *of == s);
+    let left: Vec<&str> = (0..all.len()).filter(|s| !is_chosen(*s)).map(|s| &*all[s].value).collect();
     let what =
         || format!("{} groups that no [[run]] chooses are not read: {}", left.len(), listed(left.iter().copied()));
-    Ok((owner, (!left.is_empty()).then(|| Remark::new(Severity::Note, what()))))
+    let remark = (!left.is_empty()).then(|| Remark::new(Severity::Note, what()));
+    let is_alone = |s: usize| manifest.group.is_some() && chosen.iter().filter(|(of, _)| *of == s).count() == 1;
+    let run = |(s, e): &(usize, usize)| Ok((cut(manifest, entries[*e], &all[*s], (times, is_alone(*s)))?, *e));
+    Ok((chosen.iter().map(run).collect::<Result<_, RecordError>>()?, remark))
+}
+
+/// Whether two entries ask for a moment that is in both.
+pub(super) fn overlap(a: &RunEntry, b: &RunEntry) -> bool {
+    let whole = [f64::NEG_INFINITY, f64::INFINITY];
+    let ([a_from, a_to], [b_from, b_to]) = (a.span.unwrap_or(whole), b.span.unwrap_or(whole));
+    a_from < b_to && b_from < a_to
 }
 
 fn belongs(entry: &RunEntry, value: &str) -> bool {

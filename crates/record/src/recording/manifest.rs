@@ -21,7 +21,7 @@
 //! groups = ["130-149"]
 //! ```
 //!
-//! Without a group column, `from_s` and `to_s` cut a run out of a long file, in s of the file's clock; several runs may share it so.
+//! `from_s` and `to_s` cut a run out of a long file, or out of each of its groups, in s of the file's clock; several runs may share it so.
 
 use super::channel_name::{self, ChannelName};
 use super::spelling::{hint, listed};
@@ -272,7 +272,7 @@ impl Reader<'_> {
         let mut runs: Vec<RunEntry> = Vec::new();
         for (i, entry) in entries.iter().enumerate() {
             let run = self.run(entry, i + 1, grouped)?;
-            if !grouped && runs.iter().any(|other| other.file == run.file && overlap(other, &run)) {
+            if !grouped && runs.iter().any(|other| other.file == run.file && super::group::overlap(other, &run)) {
                 let problem = format!(
                     "[[run]] {} names \"{}\" a second time; a run has one role (from_s and to_s cut it in two)",
                     i + 1,
@@ -313,11 +313,11 @@ impl Reader<'_> {
             }
             Some(value) => Some(self.groups(value, &place)?),
         };
-        let span = self.span(table, &place, grouped)?;
+        let span = self.span(table, &place)?;
         Ok(RunEntry { file, role, note: self.text_of(table, "note", &place)?.unwrap_or_default(), groups, span })
     }
 
-    fn span(&self, table: &Table, place: &str, grouped: bool) -> Result<Option<[f64; 2]>, RecordError> {
+    fn span(&self, table: &Table, place: &str) -> Result<Option<[f64; 2]>, RecordError> {
         let bound = |key: &str, without: f64| match table.get(key) {
             None => Ok(without),
             Some(value) => number(value).filter(|t| t.is_finite()).ok_or_else(|| {
@@ -327,10 +327,6 @@ impl Reader<'_> {
         let span = [bound("from_s", f64::NEG_INFINITY)?, bound("to_s", f64::INFINITY)?];
         if span == [f64::NEG_INFINITY, f64::INFINITY] {
             return Ok(None);
-        }
-        if grouped {
-            let problem = format!("{place}: from_s and to_s cut a file without a group column; choose groups instead");
-            return Err(self.wrong("_s", problem));
         }
         if span[0] >= span[1] {
             let problem = format!("{place}: it ends, to_s = {}, before it begins, from_s = {}", span[1], span[0]);
@@ -384,13 +380,6 @@ impl Reader<'_> {
             None => RecordError::Table { path: self.path.clone(), problem },
         }
     }
-}
-
-/// Whether two runs of one file share a moment.
-fn overlap(a: &RunEntry, b: &RunEntry) -> bool {
-    let whole = [f64::NEG_INFINITY, f64::INFINITY];
-    let ([a_from, a_to], [b_from, b_to]) = (a.span.unwrap_or(whole), b.span.unwrap_or(whole));
-    a_from < b_to && b_from < a_to
 }
 
 fn number(value: &Value) -> Option<f64> {
