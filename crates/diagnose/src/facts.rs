@@ -1,11 +1,13 @@
 //! What the nominal model and the recording offer to hypotheses: places and nominal numbers.
 
 use crate::plant::Built;
+use crate::reading::Value;
 use crate::tape::{Commanded, Tape};
 use contact::{Normal, NormalLaw};
 use friction::Friction;
 use multibody::JointKind;
 use scenario::effects::facts::Survey;
+use scenario::measure::Quantity;
 use sim::ActuatorKind;
 
 pub use scenario::effects::facts::{BodyFact, ContactFact, JointFact, SensorFact};
@@ -23,6 +25,8 @@ pub struct Facts {
     pub thrusters: Vec<String>,
     /// What was measured.
     pub sensors: Vec<SensorFact>,
+    /// Acceleration of gravity, m/s², W axes.
+    pub gravity: [f64; 3],
     /// Longest run, s.
     pub duration: f64,
     /// Frequencies at which what a model leaves swings, Hz; none before that was looked at.
@@ -47,6 +51,7 @@ impl Facts {
             contacts: contacts(built),
             thrusters: thrusters(built),
             sensors,
+            gravity: built.model.calc_field(0.0, &spatial::Vec3::zeros()).into(),
             duration: tapes.iter().map(|t| t.span.1 - t.span.0).fold(0.0, f64::max),
             lines: Vec::new(),
         }
@@ -56,8 +61,8 @@ impl Facts {
 impl Facts {
     /// What a definition may look at around a place.
     pub fn survey(&self) -> Survey<'_> {
-        let Self { joints, bodies, contacts, duration, lines, .. } = self;
-        Survey { joints, bodies, contacts, duration: *duration, lines }
+        let Self { joints, bodies, contacts, gravity, duration, lines, .. } = self;
+        Survey { joints, bodies, contacts, gravity: *gravity, duration: *duration, lines }
     }
 
     /// Without the joints and bodies that effects have brought: a mount's tip has no friction of its own. What is touched at other times is not free of torques.
@@ -88,10 +93,23 @@ fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
                 coordinate,
                 armature: joint.armature,
                 largest_command: largest,
+                travel: travel(tapes, vehicle.v0 + joint.v_index),
             });
         }
     }
     all
+}
+
+/// How far a joint's readings go.
+fn travel(tapes: &[Tape], coordinate: usize) -> f64 {
+    let is_own = |q: Quantity| q == Quantity::JointPosition(coordinate) || q == Quantity::JointLinkPosition(coordinate);
+    let readings = tapes.iter().flat_map(|t| &t.readings).filter(|r| is_own(r.quantity));
+    let places = readings.flat_map(|r| &r.values).filter_map(|v| match v {
+        Value::Vector(x) => Some(x.x),
+        Value::Rotation(_) => None,
+    });
+    let [low, high] = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+    (high - low).max(0.0)
 }
 
 fn bodies(built: &Built) -> Vec<BodyFact> {

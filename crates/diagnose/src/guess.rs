@@ -226,6 +226,7 @@ mod tests {
             sigma: 5e-6,
             times,
             values,
+            rounding: 0.0,
             late_s: 0.0,
         };
         Tape {

@@ -204,6 +204,11 @@ impl Noise {
             let square: f64 = stretches.iter().flatten().map(|r| r * r).sum();
             let found = Found { white: s2.sqrt(), whole: (square / f64::max(samples, 1.0)).sqrt() };
             let Some(factor) = factor_of(found, is_stated).filter(|f| *f > AT_REST) else { continue };
+            // What a coarse encoder reads of a slow motion stays the same from sample to sample, and is wrong by its rounding.
+            let factor = factor.max(least_factor(stage.tapes, channel));
+            if (factor - 1.0).abs() < SURE {
+                continue;
+            }
             variance += (samples * SPREAD).powi(2) / count as f64;
             factors.insert(channel.clone(), factor);
         }
@@ -232,6 +237,12 @@ impl Noise {
         };
         self.factors.iter().map(one).collect()
     }
+}
+
+/// Factor at which the noise of a channel is its rounding.
+fn least_factor(tapes: &[Tape], channel: &str) -> f64 {
+    let own = tapes.iter().flat_map(|t| &t.readings).filter(|r| r.channel == channel && r.sigma > 0.0);
+    own.map(|r| r.rounding / r.sigma).fold(0.0, f64::max)
 }
 
 /// Root mean squares of a channel's residuals, units of the σ in use.

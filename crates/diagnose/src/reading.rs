@@ -41,6 +41,8 @@ pub struct Reading {
     pub axes: Vec<usize>,
     /// Standard deviation of one component, rounding included.
     pub sigma: f64,
+    /// What of it is rounding: there is no less noise.
+    pub rounding: f64,
     /// Instants, s.
     pub times: Vec<f64>,
     /// Measured values; components that were not sampled are zero.
@@ -99,6 +101,7 @@ mod tests {
             sigma: 0.05,
             times: vec![0.0, 1.0, 2.0, 3.0],
             values: vec![force(0.0), force(-0.4), force(0.2), force(9.0)],
+            rounding: 0.0,
             late_s: 0.0,
         };
         assert_eq!(reading.loud(6.0).collect::<Vec<_>>(), [1.0, 3.0]);

@@ -249,11 +249,13 @@ fn readings_of(set: &RecordingSet, prefix: &str, quantity: Quantity, group: &[(u
         // Rounded components of a unit quaternion turn into an angle twice as large.
         let rounding = if orientation { 2.0 * quantum } else { quantum };
         let told = || noise::raw_sigma(&part.iter().map(|(_, s)| *s).collect::<Vec<_>>(), orientation);
-        let sigma = (stated.or_else(told).unwrap_or(0.0).powi(2) + rounding * rounding / 12.0).sqrt();
+        let rounding = rounding / 12f64.sqrt();
+        let sigma = stated.or_else(told).unwrap_or(0.0).hypot(rounding);
         let times = part[0].1.times.clone();
         let values = (0..times.len()).map(|i| value_at(part, i, orientation)).collect();
         let axes = if orientation { vec![0, 1, 2] } else { part.iter().map(|(k, _)| *k).collect() };
-        Reading { channel: prefix.to_owned(), quantity, axes, sigma, times: times.to_vec(), values, late_s: 0.0 }
+        let (channel, times) = (prefix.to_owned(), times.to_vec());
+        Reading { channel, quantity, axes, sigma, rounding, times, values, late_s: 0.0 }
     };
     parts.iter().filter(|p| !is_orientation(&quantity) || p.len() == 4).map(of_part).collect()
 }
@@ -278,7 +280,7 @@ mod tests {
             let times: Vec<f64> = (0..=10).step_by(every).map(|i| 0.1 * i as f64).collect();
             let values = vec![Value::Vector(Vec3::zeros()); times.len()];
             let quantity = Quantity::JointPosition(0);
-            Reading { channel: channel.to_owned(), quantity, axes: vec![0], sigma: 1.0, times, values, late_s: 0.0 }
+            Reading { channel: channel.to_owned(), quantity, axes: vec![0], sigma: 1.0, rounding: 0.0, times, values, late_s: 0.0 }
         };
         let commands =
             vec![CommandTape { actuator: 0, what: Commanded::Effort, times: vec![0.0, 0.8], values: vec![1.0, 2.0] }];

@@ -10,7 +10,7 @@ use scenario::spec::Tolerance;
 use spatial::{Mat3, Vec3};
 
 fn joint() -> JointFact {
-    JointFact { name: "hinge".into(), coordinate: 0, armature: 0.2, largest_command: 2.0 }
+    JointFact { name: "hinge".into(), coordinate: 0, armature: 0.2, largest_command: 2.0, travel: 0.0 }
 }
 
 fn actuators() -> [ActuatorFact; 2] {
@@ -68,6 +68,7 @@ fn candidates(effect: &EffectDef) -> Vec<Candidate> {
         joints: std::slice::from_ref(&joint),
         bodies: &bodies,
         contacts: std::slice::from_ref(&contact),
+        gravity: [0.0; 3],
         duration: 40.0,
         lines: &[0.37],
     };

@@ -240,6 +240,7 @@ mod tests {
                 sigma: 1.0,
                 times,
                 values,
+                rounding: 0.0,
                 late_s: 0.0,
             }
         };

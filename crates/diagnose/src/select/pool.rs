@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn more_numbers_cost_more_and_a_tolerated_number_costs_nothing() {
-        let joint = JointFact { name: "j".to_owned(), coordinate: 0, armature: 0.0, largest_command: 0.0 };
+        let joint = JointFact { name: "j".to_owned(), coordinate: 0, armature: 0.0, largest_command: 0.0, travel: 0.0 };
         let facts = Facts { joints: vec![joint], duration: 1.0, ..Facts::default() };
         let all = hypotheses(&facts);
         let of = |name: &str| all.iter().find(|h| h.name == name).expect("it is in the library");

@@ -14,6 +14,8 @@ pub struct JointFact {
     pub armature: f64,
     /// Largest command, N·m or N; zero where none was recorded.
     pub largest_command: f64,
+    /// How far its readings go, rad or m; zero where nothing reads its place.
+    pub travel: f64,
 }
 
 /// An actuator: the drive of a joint, a thruster, or all thrusters together.
@@ -85,6 +87,8 @@ pub struct Survey<'a> {
     pub bodies: &'a [BodyFact],
     /// Contact pairs.
     pub contacts: &'a [ContactFact],
+    /// Acceleration of gravity, m/s², W axes.
+    pub gravity: [f64; 3],
     /// Longest run, s.
     pub duration: f64,
     /// Frequencies at which what the model leaves swings, Hz.

@@ -51,12 +51,21 @@ const LONG: f64 = 2.0;
 /// Orders at which a ripple is screened.
 const ORDERS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0];
 
+/// Of waves that a joint has gone through, at least one: a part of one is as much of gravity, of an offset or of a spring.
 fn candidates(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
+    let least = if joint.travel > 0.0 { std::f64::consts::TAU / joint.travel } else { 0.0 }.clamp(0.5, LARGEST);
     let coordinates = vec![
         Coordinate::free("amplitude", 0.0),
         Coordinate::free("phase", 0.0),
-        Coordinate::free("order", 1.0).within([0.5, 1000.0]),
+        Coordinate::free("order", least.max(1.0)).within([least, LARGEST]),
     ];
     let ripple = Candidate::new(joint.place(), coordinates).encoded(Encoding::Phasor);
-    vec![ripple.screened_on(2, &ORDERS, &Along::each(0..2, SMALL)).expensive()]
+    let mut orders: Vec<f64> = ORDERS.into_iter().filter(|o| *o >= least).collect();
+    if orders.is_empty() {
+        orders.push(least);
+    }
+    vec![ripple.screened_on(2, &orders, &Along::each(0..2, SMALL)).expensive()]
 }
+
+/// Largest order.
+const LARGEST: f64 = 1000.0;

@@ -61,7 +61,7 @@ pub static SENSOR_SCALE: EffectDef = EffectDef {
             if sensor.is_orientation() {
                 return Vec::new();
             }
-            let coordinates = vec![Coordinate::free("scale", 1.0)];
+            let coordinates = vec![Coordinate::free("scale", 1.0).within(CREDIBLE)];
             vec![Candidate::new(sensor.place(), coordinates).screened(&[Along::new(0, 1e-4)])]
         }),
         tier: Tier::Exotic,
@@ -75,6 +75,9 @@ pub static SENSOR_SCALE: EffectDef = EffectDef {
     shown: Shown::Each,
     corrects: Corrects::Nothing,
 };
+
+/// Factors by which a sensor may be wrong: beyond these its unit is, which an inspection of the recording tells.
+const CREDIBLE: [f64; 2] = [0.5, 2.0];
 
 fn orientations_have_none(gauges: &[Gauge]) -> Option<&'static str> {
     let turns = |g: &Gauge| g.quantity().is_orientation();

@@ -28,13 +28,19 @@ pub static TILT: EffectDef = EffectDef {
     corrects: Corrects::Nothing,
 };
 
+/// Along the axes on which something moves; not along gravity, of which a tilt takes a second order.
 fn candidates(survey: &Survey<'_>) -> Vec<Candidate> {
     let bases = || survey.bodies.iter().filter(|b| b.is_base);
-    let shows = |k: &usize| bases().any(|b| b.slides()[*k]) || !survey.joints.is_empty();
-    let columns = Along::each((0..3).filter(shows), 1e-6);
-    if columns.is_empty() {
+    let moves = |k: usize| bases().any(|b| b.slides()[k]) || !survey.joints.is_empty();
+    let strength = survey.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let falls = |k: usize| survey.gravity[k].abs() > ALONG * strength;
+    let (shown, held): (Vec<usize>, Vec<usize>) = (0..3).partition(|k| moves(*k) && !falls(*k));
+    if shown.is_empty() {
         return Vec::new();
     }
     let vector = Coordinate::vector(["vector[0]", "vector[1]", "vector[2]"], [0.0; 3]);
-    vec![Candidate::new("world".to_owned(), vector).screened(&columns)]
+    vec![Candidate::new("world".to_owned(), vector).screened(&Along::each(shown, 1e-6)).holding(held)]
 }
+
+/// Share of gravity from which on it falls along an axis.
+const ALONG: f64 = 0.9;
