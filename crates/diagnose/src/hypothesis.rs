@@ -157,9 +157,12 @@ impl Hypothesis {
             }
             let clamped = self.clamped(&x);
             let lost = |k: usize| clamped[k] != x[k] && (clamped[k] - self.coordinates[k].neutral).abs() < 1e-12;
-            // A level that would have to be negative explains nothing.
+            // A level that would have to be negative explains nothing, nor does what only acts by way of it.
             let moving = (0..x.len()).filter(|k| columns.iter().any(|c| c.direction[*k] != 0.0));
-            return (!moving.clone().all(lost)).then_some(clamped);
+            let is_level = |k: &usize| self.coordinates[*k].bounds.contains(&self.coordinates[*k].neutral);
+            let mut levels = moving.clone().filter(is_level).peekable();
+            let explains = levels.peek().is_none() || !levels.all(lost);
+            return (explains && !moving.clone().all(lost)).then_some(clamped);
         }
         let strength: f64 = amplitudes.iter().sum();
         let mean = |k: usize| {

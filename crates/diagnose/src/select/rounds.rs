@@ -14,9 +14,11 @@ use crate::identify::marginal::Spread;
 use crate::screen::Score;
 use crate::work::Until;
 
-/// Sets of the chain that are fitted in full simulation in a round, and how many of all where promises are broken.
-const FITTED: usize = 4;
+/// Sets of one size of the chain that are fitted in full simulation in a round, and how many of all where promises are broken.
+const FITTED: usize = 2;
 const ALL_FITTED: usize = 12;
+/// Effects that are fitted alone where none of the sets leaves next to nothing: what a chain promises of a law hangs on how well it follows what moves.
+const ALONE: usize = 8;
 /// Places among them at which the most promising law is tried beside its own.
 const SIBLINGS: usize = 2;
 /// Sets of one size among them that the missing force speaks for; of the largest one.
@@ -56,7 +58,11 @@ pub(super) fn fit_sets(
     let (pool, watch) = (&looked.pool, problem.stage.work.watch);
     let [mut done, mut refuted] = [const { Vec::<Vec<String>>::new() }; 2];
     let mut enough: Vec<Enough> = Vec::new();
-    while let Some(set) = next_of(proposals(looked, now, &refuted), pool, &done) {
+    let next = |now: &Fitted, (done, refuted): (&[Vec<String>], &[Vec<String>]), is_enough: bool| {
+        let promising = next_of(proposals(looked, now, refuted), pool, done);
+        promising.or_else(|| if is_enough { None } else { next_of(alone(looked, now), pool, done) })
+    };
+    while let Some(set) = next(now, (&done, &refuted), !enough.is_empty()) {
         if done.len() == ALL_FITTED || problem.stage.work.is_spent(Until::Search) {
             break;
         }
@@ -184,7 +190,11 @@ fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Prop
         score: now.score + s.change,
         spread: now.spread.clone(),
     });
-    let worth = sets.iter().filter(|s| now.score - s.score >= PROMISING * most).take(FITTED);
+    let is_worth = |s: &&&LinearSet| now.score - s.score >= PROMISING * most;
+    let worth = (1..=AT_ONCE).flat_map(|size| {
+        let of_size = move |s: &&&LinearSet| s.members.len() == size;
+        sets.iter().filter(is_worth).filter(of_size).take(FITTED)
+    });
     let single = sets.iter().find(|s| s.members.len() == 1);
     let by_chain =
         worth.chain(single).map(|s| Proposal { members: s.members.clone(), score: s.score, spread: s.spread.clone() });
@@ -197,6 +207,25 @@ fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Prop
         }
     }
     all.sort_by_key(|p| p.members.len());
+    all
+}
+
+/// Laws alone that promise anything, the most promising first, a form of each.
+fn alone(looked: &Looked, now: &Fitted) -> Vec<Proposal> {
+    let pool = &looked.pool;
+    let mut titles: Vec<String> = Vec::new();
+    let mut all = Vec::new();
+    for s in looked.grown.scores.iter().filter(|s| s.score > 0.0) {
+        let title = pool.hypotheses[s.hypothesis].title();
+        let entry = pool.entries.iter().position(|e| e.hypothesis == s.hypothesis && e.point == s.point);
+        let (Some(entry), false) = (entry, titles.contains(&title)) else { continue };
+        let members = vec![(entry, s.start.clone())];
+        all.push(Proposal { members, score: now.score - s.score, spread: now.spread.clone() });
+        titles.push(title);
+        if all.len() == ALONE {
+            break;
+        }
+    }
     all
 }
 

@@ -113,7 +113,11 @@ pub fn search(
     // A joint that yields by now is no more one that may begin to, and yet that is what a joint with play becomes.
     known.extend(first);
     let plain = simplified(problem, relaxed(problem, now, many), &known, (many, all))?;
-    found.best = exchanged(problem, plain, &found.tried, many)?;
+    let titles = plain.set.titles();
+    found.best = exchanged(problem, plain, (&found.tried, &found.shown), many)?;
+    if found.best.set.titles() != titles {
+        found.best = simplified(problem, found.best, &known, (many, all))?;
+    }
     Ok(found)
 }
 

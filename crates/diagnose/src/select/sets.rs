@@ -60,7 +60,7 @@ pub struct Ground<'a> {
 
 /// Sets of one size that are estimated with a spread of their own, and that grow further.
 const ESTIMATED: usize = 8;
-const GROWN: usize = 2;
+const GROWN: usize = 3;
 /// Share of what the best smaller set leaves beyond noise that one more effect has to take away.
 const FURTHER: f64 = 0.3;
 /// Entries that take part in sets of two and more: the best by themselves.
