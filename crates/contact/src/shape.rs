@@ -68,6 +68,26 @@ pub struct Collider {
     pub shape: Shape,
 }
 
+impl Shape {
+    /// Displacements that leave it where it is: shifts along its axes x, y, z, and turns about them through its origin.
+    pub fn unmoved_by(&self) -> [bool; 6] {
+        use crate::docking::Docking::{InnerCone, InnerCylinder, Ring};
+        let about_z = [false, false, false, false, false, true];
+        match self {
+            Self::HalfSpace => [true, true, false, false, false, true],
+            Self::Ball { .. } => [false, false, false, true, true, true],
+            Self::Cylinder { .. } | Self::Capsule { .. } => about_z,
+            Self::Docking(InnerCone { .. } | InnerCylinder { .. } | Ring { .. }) => about_z,
+            Self::Docking(_)
+            | Self::Cuboid { .. }
+            | Self::ConvexHull { .. }
+            | Self::TriMesh { .. }
+            | Self::Bed(_)
+            | Self::Compound(_) => [false; 6],
+        }
+    }
+}
+
 impl Collider {
     /// Checks sizes, vertices and indices; whether points span a volume shows when the scene is built.
     pub(crate) fn check(&self) -> Result<(), ContactError> {
@@ -161,5 +181,22 @@ impl Collider {
 
     fn not_finite(&self, what: String) -> ContactError {
         ContactError::NotFinite { collider: self.name.clone(), what }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_leaves_a_shape_where_it_is() {
+        let moved_by = |shape: Shape| {
+            let unmoved = shape.unmoved_by();
+            (0..6).filter(|k| !unmoved[*k]).collect::<Vec<_>>()
+        };
+        assert_eq!(moved_by(Shape::HalfSpace), [2, 3, 4]);
+        assert_eq!(moved_by(Shape::Ball { radius: 0.1 }), [0, 1, 2]);
+        assert_eq!(moved_by(Shape::Cylinder { radius: 0.1, half_length: 1.0 }), [0, 1, 2, 3, 4]);
+        assert_eq!(moved_by(Shape::Cuboid { half_extents: Vec3::new(1.0, 1.0, 1.0) }).len(), 6);
     }
 }

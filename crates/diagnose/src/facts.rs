@@ -156,10 +156,33 @@ fn contacts(built: &Built) -> Vec<ContactFact> {
         };
         let (body_a, body_b) = built.model.pair_bodies(pair);
         let mass = [body_a, body_b].map(|b| free_mass(built, b)).into_iter().fold(f64::INFINITY, f64::min);
-        all.push(ContactFact { name, normal, bristle, mass, has_normal_motion: normal.is_some() });
+        let unmoved_by = unmoved(built, pair);
+        all.push(ContactFact { name, normal, bristle, mass, has_normal_motion: normal.is_some(), unmoved_by });
     }
     all
 }
+
+/// Displacements of a pair's second part, along and about the axes of its link, that leave it where it is.
+fn unmoved(built: &Built, pair: usize) -> [bool; 6] {
+    let second = built.model.scene.pairs()[pair][1];
+    let (collider, name) = (&built.model.scene.colliders()[second], &built.model.collider_links[second]);
+    let own = collider.shape.unmoved_by();
+    let vehicle = built.model.owners.get(collider.body).map(|(v, _)| &built.model.vehicles[*v]);
+    let is_own = |l: &&multibody::Link| name.rsplit_once('/').is_some_and(|(_, link)| link == l.name);
+    let link = vehicle.and_then(|v| v.tree.links.iter().find(is_own));
+    let turned = link.map_or_else(spatial::Rot::identity, |l| l.frame_bl.to_pose().rotation.inverse());
+    let of_shape = (turned * collider.pose_bs.rotation).inverse().to_rotation_matrix();
+    // Several shapes on a link turn together about its origin.
+    let is_alone = built.model.collider_links.iter().filter(|other| *other == name).count() == 1 || link.is_none();
+    std::array::from_fn(|k| {
+        let (first, axis) = (k / 3 * 3, k % 3);
+        let leaves = |j: usize| own[first + j] || of_shape[(j, axis)].abs() < ALIGNED;
+        (first == 0 || is_alone) && (0..3).all(leaves)
+    })
+}
+
+/// Share of an axis below which it is none of another one's.
+const ALIGNED: f64 = 1e-9;
 
 /// The parts of a pair: shapes, or links that carry several shapes under one law, as the two plates of a drogue.
 fn contact_name(built: &Built, pair: usize) -> String {

@@ -369,3 +369,27 @@ pub fn freedoms(built: &Built, start: &Start) -> Vec<Freedom> {
     all.extend((0..start.bristles.len()).flat_map(|i| (0..3).map(move |axis| Freedom::Bristle(i, axis))));
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_added_is_the_difference_whatever_the_attitude() {
+        let of = |attitude: Vec3, spin: Vec3| Start {
+            bases: vec![Pose::from_parts(Vec3::new(1.0, 2.0, 3.0).into(), exp_rotation(&attitude))],
+            twists: vec![Twist { ang: exp_rotation(&attitude) * spin, lin: Vec3::zeros() }],
+            ..Start::default()
+        };
+        let one = of(Vec3::new(0.3, -0.2, 0.1), Vec3::new(0.5, 0.1, -0.4));
+        let other = of(Vec3::new(-2.0, 0.7, 1.1), Vec3::new(0.5, 0.3, -0.4));
+        let spins: Vec<Freedom> = (0..3).map(|axis| Freedom::Spin(0, axis)).collect();
+        let by = other.difference(&one, &spins);
+        assert!((Vec3::from_column_slice(&by) - Vec3::new(0.0, 0.2, 0.0)).norm() < 1e-12, "its own axes: {by:?}");
+        let moved = one.retract(&spins, &by);
+        assert!(other.difference(&moved, &spins).iter().all(|d| d.abs() < 1e-12));
+        // A turn takes the spin along.
+        let turned = one.moved(Freedom::Turn(0, 2), 0.8);
+        assert!(turned.difference(&one, &spins).iter().all(|d| d.abs() < 1e-12));
+    }
+}

@@ -280,7 +280,16 @@ mod tests {
             let times: Vec<f64> = (0..=10).step_by(every).map(|i| 0.1 * i as f64).collect();
             let values = vec![Value::Vector(Vec3::zeros()); times.len()];
             let quantity = Quantity::JointPosition(0);
-            Reading { channel: channel.to_owned(), quantity, axes: vec![0], sigma: 1.0, rounding: 0.0, times, values, late_s: 0.0 }
+            Reading {
+                channel: channel.to_owned(),
+                quantity,
+                axes: vec![0],
+                sigma: 1.0,
+                rounding: 0.0,
+                times,
+                values,
+                late_s: 0.0,
+            }
         };
         let commands =
             vec![CommandTape { actuator: 0, what: Commanded::Effort, times: vec![0.0, 0.8], values: vec![1.0, 2.0] }];

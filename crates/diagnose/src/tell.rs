@@ -44,11 +44,10 @@ pub(crate) fn tell(
         explained_share: (findings.verdict.is_found() && findings.found.set.has_findings())
             .then(|| findings.explained.clone()),
         remainder: remainder(findings, stage, &features),
-        remarks: inspection
-            .remarks
-            .iter()
-            .filter(|r| r.severity > record::Severity::Note)
-            .map(record::Remark::sentence)
+        remarks: record::inspect::said_once(&inspection.remarks)
+            .into_iter()
+            .filter(|(r, _)| r.severity > record::Severity::Note)
+            .map(|(r, more)| r.sentence() + &more)
             .chain(findings.said.iter().cloned())
             .chain(said_of_tolerances(findings, &scenario.tolerance))
             .chain(lost_runs(findings, stage))
@@ -56,7 +55,7 @@ pub(crate) fn tell(
     };
     let evidence = Evidence {
         title: findings.title.clone(),
-        quality: inspection.remarks.iter().map(quality).collect(),
+        quality: record::inspect::said_once(&inspection.remarks).into_iter().map(quality).collect(),
         discretisation: Some(discretisation(findings)),
         heat: heat(findings, stage),
         curves: crate::curves::curves(findings, stage),
@@ -116,14 +115,14 @@ fn discretisation(findings: &Findings) -> evidence::Discretisation {
     evidence::Discretisation { step_s: found.pace.step, window_s: findings.window, error: found.worst, bound: 0.1 }
 }
 
-fn quality(remark: &record::Remark) -> Remark {
+fn quality((remark, more): (&record::Remark, String)) -> Remark {
     let level = match remark.severity {
         record::Severity::Note => Level::Note,
         record::Severity::Warning => Level::Warning,
         record::Severity::Fault => Level::Serious,
     };
     let subject = remark.channel.clone().or_else(|| remark.run.clone()).unwrap_or_default();
-    Remark { level, subject, text: remark.what.clone() }
+    Remark { level, subject, text: remark.what.clone() + &more }
 }
 
 /// Covariance of one member's coordinates; those that were held have none.

@@ -116,6 +116,30 @@ fn a_long_file_is_cut_into_runs_by_its_clock() {
 }
 
 #[test]
+fn a_group_is_cut_by_the_clock_too() {
+    let csv = "toss,t,joint.a.position\n0,0,1\n0,1,2\n0,2,3\n1,0,4\n1,1,5\n1,2,6\n1,3,7\n";
+    let head = format!("{HEAD}[time]\ngroup = \"toss\"\n");
+    let run = |role: &str, rest: &str| format!("{}{rest}\n", FIT.replace("fit", role));
+    let at = |toml: String| exact(&toml, &[("a.csv", csv.as_bytes())]);
+    let set = load(at(format!("{head}{}", run("fit", "groups = [\"0-1\"]\nfrom_s = 1"))).path());
+    let runs: Vec<_> = set.runs.iter().map(|r| (&*r.file, &*r.series[0].times, &*r.series[0].values)).collect();
+    assert_eq!(
+        runs,
+        [
+            ("a.csv#toss=0", &[0.0, 1.0][..], &[2.0, 3.0][..]),
+            ("a.csv#toss=1", &[0.0, 1.0, 2.0][..], &[5.0, 6.0, 7.0][..])
+        ]
+    );
+    // One group may be two runs.
+    let two = [run("fit", "groups = [1]\nto_s = 2"), run("holdout", "groups = [1]\nfrom_s = 2")].concat();
+    let set = load(at(format!("{head}{two}")).path());
+    let names: Vec<&str> = set.runs.iter().map(|r| &*r.file).collect();
+    assert_eq!(names, ["a.csv#toss=1#0-1s", "a.csv#toss=1#2-3s"]);
+    let said = error(at(format!("{head}{}", run("fit", "from_s = 3"))).path());
+    assert!(said.contains("a.csv#toss=0: no row from 3 to inf s; it goes from 0 to 2 s"), "{said}");
+}
+
+#[test]
 fn repeated_times_are_averaged_and_commands_hold_the_last() {
     let csv = "t,joint.a.position,joint.a.effort_command\n0,1,5\n1,2,6\n1,4,7\n1,9,\n2,3,8\n";
     let set = load(one(csv).path());

@@ -45,6 +45,7 @@ fn contact() -> ContactFact {
         bristle: Some([0.25, 1e5, 50.0]),
         mass: 40.0,
         has_normal_motion: true,
+        unmoved_by: [false; 6],
     }
 }
 

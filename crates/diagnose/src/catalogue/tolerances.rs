@@ -51,7 +51,13 @@ mod tests {
     /// A link on a driven joint, a contact and a gyro.
     fn facts() -> Facts {
         Facts {
-            joints: vec![JointFact { name: "hinge".into(), coordinate: 0, armature: 0.0, largest_command: 2.0, travel: 0.0 }],
+            joints: vec![JointFact {
+                name: "hinge".into(),
+                coordinate: 0,
+                armature: 0.0,
+                largest_command: 2.0,
+                travel: 0.0,
+            }],
             bodies: vec![BodyFact {
                 name: "bar".into(),
                 vehicle: 0,
@@ -68,6 +74,7 @@ mod tests {
                 bristle: Some([0.25, 1e5, 50.0]),
                 mass: 4.0,
                 has_normal_motion: true,
+                unmoved_by: [false; 6],
             }],
             sensors: vec![SensorFact {
                 channel: "body.bar.angular_velocity".into(),

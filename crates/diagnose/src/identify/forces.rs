@@ -85,12 +85,7 @@ const UNMOVED: f64 = 1e-12;
 
 /// Forces that would by themselves move the rates as these move from interval to interval: beyond them nothing is unknown; none where it moves nothing. `steps`: changes
 /// of the state over an interval; `b`: ∂end/∂f of a typical one.
-pub fn first_spread(
-    freedoms: &[Freedom],
-    forces: &[Force],
-    steps: &[DVector<f64>],
-    b: &DMatrix<f64>,
-) -> DVector<f64> {
+pub fn first_spread(freedoms: &[Freedom], forces: &[Force], steps: &[DVector<f64>], b: &DMatrix<f64>) -> DVector<f64> {
     let rates: Vec<usize> = (0..freedoms.len()).filter(|k| freedoms[*k].is_rate()).collect();
     let of = |j: usize| {
         let column = DVector::from_iterator(rates.len(), rates.iter().map(|k| b[(*k, j)]));

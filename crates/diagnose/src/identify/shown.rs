@@ -78,6 +78,10 @@ mod tests {
         let mut a = DMatrix::identity(4, 4);
         (a[(0, 1)], a[(3, 2)]) = (0.1, 0.1);
         assert_eq!(hidden((&s, &a), &[true; 4]), [false, false, true, true]);
-        assert_eq!(hidden((&s, &a), &[true, true, true, false]), [false; 4], "what may not be hidden is moved by the third");
+        assert_eq!(
+            hidden((&s, &a), &[true, true, true, false]),
+            [false; 4],
+            "what may not be hidden is moved by the third"
+        );
     }
 }

@@ -18,7 +18,16 @@ fn docking() -> (Built, Tape, Start) {
         let times: Vec<f64> = (0..=(0.7 * rate) as usize).map(|i| i as f64 / rate).collect();
         let values = vec![Value::Vector(Vec3::zeros()); times.len()];
         let channel = channel.to_owned();
-        Reading { channel, quantity: gauge.quantity(), axes: vec![0, 1, 2], sigma: 1.0, rounding: 0.0, times, values, late_s: 0.0 }
+        Reading {
+            channel,
+            quantity: gauge.quantity(),
+            axes: vec![0, 1, 2],
+            sigma: 1.0,
+            rounding: 0.0,
+            times,
+            values,
+            late_s: 0.0,
+        }
     };
     let readings = vec![reading("body.chaser.position", 250.0), reading("sensor.probe.force", 2000.0)];
     let tape = Tape::assemble(("docking", Role::Fit), Vec::new(), readings);
@@ -168,8 +177,16 @@ fn what_is_handed_on_at_a_tick_remembers_what_the_drive_gave() {
     let times: Vec<f64> = (0..=200).map(|i| f64::from(i) * 5e-3).collect();
     let values = vec![Value::Vector(Vec3::zeros()); times.len()];
     let channel = "joint.hinge.velocity".to_owned();
-    let reading =
-        Reading { channel, quantity: gauge.quantity(), axes: vec![0], sigma: 1.0, rounding: 0.0, times, values, late_s: 0.0 };
+    let reading = Reading {
+        channel,
+        quantity: gauge.quantity(),
+        axes: vec![0],
+        sigma: 1.0,
+        rounding: 0.0,
+        times,
+        values,
+        late_s: 0.0,
+    };
     // A torque that changes its sign with every tick of 10 ms.
     let ticks: Vec<f64> = (0..100).map(|i| f64::from(i) * 1e-2).collect();
     let values = (0..100).map(|i| if i % 2 == 0 { 2.0 } else { -1.0 }).collect();

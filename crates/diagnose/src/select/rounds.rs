@@ -58,11 +58,7 @@ pub(super) fn fit_sets(
     let (pool, watch) = (&looked.pool, problem.stage.work.watch);
     let [mut done, mut refuted] = [const { Vec::<Vec<String>>::new() }; 2];
     let mut enough: Vec<Enough> = Vec::new();
-    let next = |now: &Fitted, (done, refuted): (&[Vec<String>], &[Vec<String>]), is_enough: bool| {
-        let promising = next_of(proposals(looked, now, refuted), pool, done);
-        promising.or_else(|| if is_enough { None } else { next_of(alone(looked, now), pool, done) })
-    };
-    while let Some(set) = next(now, (&done, &refuted), !enough.is_empty()) {
+    while let Some(set) = next(looked, now, (&done, &refuted), !enough.is_empty()) {
         if done.len() == ALL_FITTED || problem.stage.work.is_spent(Until::Search) {
             break;
         }
@@ -125,6 +121,17 @@ fn fit_first(
     // A law that leads astray may do so for what it holds in reserve.
     let free = set.released().and_then(|free| look(free).ok());
     Ok(free.filter(|free| criterion(&free.1, many) < criterion(&first.1, many)).unwrap_or(first))
+}
+
+/// What is fitted next: the first of the proposals that was not yet, and of laws alone where nothing was enough.
+fn next(
+    looked: &Looked,
+    now: &Fitted,
+    (done, refuted): (&[Vec<String>], &[Vec<String>]),
+    is_enough: bool,
+) -> Option<Proposal> {
+    let promising = next_of(proposals(looked, now, refuted), &looked.pool, done);
+    promising.or_else(|| if is_enough { None } else { next_of(alone(looked, now), &looked.pool, done) })
 }
 
 /// The first proposal that was not fitted yet.

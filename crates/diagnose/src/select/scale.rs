@@ -59,15 +59,13 @@ impl Table {
 
     /// Every matrix with some columns at some amplitudes; nothing where none of these changes anything.
     fn changed(&self, columns: &[usize], amplitudes: &[f64]) -> Vec<[DMatrix<f64>; 2]> {
-        let moving: Vec<_> = columns
-            .iter()
-            .zip(amplitudes)
-            .filter_map(|(c, a)| Some((self.by_column.get(*c)?.as_ref()?, *a)))
-            .collect();
+        let moving: Vec<_> =
+            columns.iter().zip(amplitudes).filter_map(|(c, a)| Some((self.by_column.get(*c)?.as_ref()?, *a))).collect();
         if moving.is_empty() {
             return Vec::new();
         }
-        let changed = |(k, own): (usize, &DMatrix<f64>)| moving.iter().fold(own.clone(), |sum, (m, a)| sum + &m[k] * *a);
+        let changed =
+            |(k, own): (usize, &DMatrix<f64>)| moving.iter().fold(own.clone(), |sum, (m, a)| sum + &m[k] * *a);
         self.own.iter().enumerate().map(|(k, own)| [own.clone(), changed((k, own))]).collect()
     }
 }

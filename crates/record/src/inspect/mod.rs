@@ -11,7 +11,7 @@ mod warn;
 
 pub use noise::{white_noise, white_variance};
 pub use quality::{Clock, Spike, Stuck, at_limit, clock, spikes, stuck};
-pub use text::to_text;
+pub use text::{said_once, to_text};
 
 use crate::consistency::{self, Consistency};
 use crate::{ChannelName, Quantity, RecordingSet, Remark, Series};

@@ -113,19 +113,26 @@ fn add_remarks(text: &mut String, inspection: &Inspection) {
         text.push_str("Nothing odd was found.\n");
         return;
     }
-    let mut said: Vec<(String, usize)> = Vec::new();
-    for remark in &inspection.remarks {
-        let key = (remark.severity, &remark.channel, pattern(&remark.what));
-        let same = |other: &&crate::Remark| (other.severity, &other.channel, pattern(&other.what)) == key;
-        let first = inspection.remarks.iter().find(same);
-        if first.is_some_and(|first| std::ptr::eq(first, remark)) {
-            said.push((remark.to_string(), inspection.remarks.iter().filter(same).count() - 1));
+    for (remark, more) in said_once(&inspection.remarks) {
+        let _ = writeln!(text, "{remark}{more}");
+    }
+}
+
+/// Remarks without those that only differ by run and figures from one before them, each with how many these are, in words.
+pub fn said_once(remarks: &[crate::Remark]) -> Vec<(&crate::Remark, String)> {
+    let mut said: Vec<(&crate::Remark, usize)> = Vec::new();
+    for remark in remarks {
+        let is_like = |other: &crate::Remark| {
+            (other.severity, &other.channel) == (remark.severity, &remark.channel)
+                && pattern(&other.what) == pattern(&remark.what)
+        };
+        match said.iter_mut().find(|(first, _)| is_like(first)) {
+            Some((_, more)) => *more += 1,
+            None => said.push((remark, 0)),
         }
     }
-    for (sentence, more) in said {
-        let more = if more > 0 { format!(" (and {more} like it in other runs)") } else { String::new() };
-        let _ = writeln!(text, "{sentence}{more}");
-    }
+    let words = |more: usize| if more > 0 { format!(" (and {more} like it in other runs)") } else { String::new() };
+    said.into_iter().map(|(remark, more)| (remark, words(more))).collect()
 }
 
 /// A sentence without its figures.

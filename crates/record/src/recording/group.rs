@@ -61,12 +61,15 @@ fn cut(
     Ok(Stretch { name, value: stretch.value.clone(), rows: begin + first..begin + last + 1 })
 }
 
+/// Rows of a run, and the number of its entry among those of its file.
+pub(super) type Chosen = (Stretch, usize);
+
 /// The runs of one file, each with its entry: stretches, or what their entries cut out of them.
 pub(super) fn choose(
     manifest: &Manifest,
     entries: &[&RunEntry],
     (all, times): (&[Stretch], &[f64]),
-) -> Result<(Vec<(Stretch, usize)>, Option<Remark>), RecordError> {
+) -> Result<(Vec<Chosen>, Option<Remark>), RecordError> {
     let mut chosen: Vec<(usize, usize)> = Vec::new();
     for (e, entry) in entries.iter().enumerate() {
         let own = (0..all.len()).filter(|s| belongs(entry, &all[*s].value));

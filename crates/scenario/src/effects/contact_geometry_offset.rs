@@ -68,5 +68,6 @@ fn candidates(contact: &ContactFact) -> Vec<Candidate> {
     }
     let mut coordinates = Coordinate::vector(["offset[0]", "offset[1]", "offset[2]"], [0.0; 3]);
     coordinates.extend(Coordinate::vector(["angle[0]", "angle[1]", "angle[2]"], [0.0; 3]));
-    vec![Candidate::new(contact.place(), coordinates).screened(&Along::each(0..6, 1e-7))]
+    let (held, shown): (Vec<usize>, Vec<usize>) = (0..6).partition(|k| contact.unmoved_by[*k]);
+    vec![Candidate::new(contact.place(), coordinates).screened(&Along::each(shown, 1e-7)).holding(held)]
 }

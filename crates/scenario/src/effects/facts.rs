@@ -63,6 +63,8 @@ pub struct ContactFact {
     pub mass: f64,
     /// Whether both sides can move against each other in space.
     pub has_normal_motion: bool,
+    /// Displacements of its second part that change nothing: shifts along, and turns about the axes of its link.
+    pub unmoved_by: [bool; 6],
 }
 
 /// A sensor.
