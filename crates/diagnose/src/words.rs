@@ -163,7 +163,9 @@ pub fn share_words(explained: &Explained) -> String {
 
 /// What is left, where, when, and on what it depends.
 fn remainder_words(diagnosis: &Diagnosis) -> String {
-    let Some(remainder) = &diagnosis.remainder else { return "Nothing is detected in the remainder.".to_owned() };
+    let Some(remainder) = &diagnosis.remainder else {
+        return "What remains shows over whole runs only, in no window.".to_owned();
+    };
     let error = match remainder.error {
         error if error > BEYOND => String::new(),
         error => format!(", {} times the noise in windows,", noise(error)),
