@@ -209,13 +209,7 @@ mod tests {
 
     /// Viscous friction of three joints, a column each, beside a force on each joint.
     fn pool() -> Pool {
-        let joint = |k: usize| JointFact {
-            name: format!("j{k}"),
-            coordinate: k,
-            armature: 0.0,
-            largest_command: 0.0,
-            travel: 0.0,
-        };
+        let joint = |k: usize| JointFact { name: format!("j{k}"), coordinate: k, ..JointFact::default() };
         let facts = Facts { joints: (0..JOINTS).map(joint).collect(), duration: 1.0, ..Facts::default() };
         let hypotheses: Vec<_> =
             hypotheses(&facts).into_iter().filter(|h| h.name == "joint-viscous-friction").collect();

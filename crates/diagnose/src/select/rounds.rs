@@ -217,37 +217,35 @@ fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Prop
     all
 }
 
+/// A law alone, as the chain scored it.
+fn scored(pool: &Pool, now: &Fitted, s: &Score, spread: &Spread) -> Option<Proposal> {
+    let entry = pool.entries.iter().position(|e| e.hypothesis == s.hypothesis && e.point == s.point)?;
+    let members = vec![(entry, s.start.clone())];
+    Some(Proposal { members, score: now.score - s.score, spread: spread.clone() })
+}
+
 /// Laws alone that promise anything, the most promising first, a form of each.
 fn alone(looked: &Looked, now: &Fitted) -> Vec<Proposal> {
     let pool = &looked.pool;
     let mut titles: Vec<String> = Vec::new();
-    let mut all = Vec::new();
-    for s in looked.grown.scores.iter().filter(|s| s.score > 0.0) {
+    let mut is_new = |s: &&Score| {
         let title = pool.hypotheses[s.hypothesis].title();
-        let entry = pool.entries.iter().position(|e| e.hypothesis == s.hypothesis && e.point == s.point);
-        let (Some(entry), false) = (entry, titles.contains(&title)) else { continue };
-        let members = vec![(entry, s.start.clone())];
-        all.push(Proposal { members, score: now.score - s.score, spread: now.spread.clone() });
+        let is_new = !titles.contains(&title);
         titles.push(title);
-        if all.len() == ALONE {
-            break;
-        }
-    }
-    all
+        is_new
+    };
+    let promising = looked.grown.scores.iter().filter(|s| s.score > 0.0).filter(&mut is_new);
+    promising.filter_map(|s| scored(pool, now, s, &now.spread)).take(ALONE).collect()
 }
 
 /// The law of a set of one at the other places that promise as much: there it looks much like it.
 fn siblings(looked: &Looked, now: &Fitted, single: &LinearSet) -> Vec<Proposal> {
     let Looked { pool, grown, .. } = looked;
     let own = pool.of(single.members[0].0);
-    let entry = |s: &Score| pool.entries.iter().position(|e| e.hypothesis == s.hypothesis && e.point == s.point);
     let is_sibling = |s: &&Score| {
         let of = &pool.hypotheses[s.hypothesis];
         of.name == own.name && of.place != own.place && s.score >= PROMISING * (now.score - single.score)
     };
-    let proposal = |s: &Score| {
-        let members = vec![(entry(s)?, s.start.clone())];
-        Some(Proposal { members, score: now.score - s.score, spread: single.spread.clone() })
-    };
+    let proposal = |s: &Score| scored(pool, now, s, &single.spread);
     grown.scores.iter().filter(is_sibling).filter_map(proposal).take(SIBLINGS).collect()
 }

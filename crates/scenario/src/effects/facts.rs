@@ -4,7 +4,7 @@ use crate::measure::Quantity;
 use spatial::{Mat3, Vec3};
 
 /// A joint with one coordinate.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct JointFact {
     /// Its name.
     pub name: String,
