@@ -11,6 +11,7 @@ mod along;
 mod approaches;
 pub mod attempt;
 mod better;
+mod bias;
 pub mod catalogue;
 mod choice;
 mod clock;

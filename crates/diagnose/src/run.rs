@@ -8,6 +8,7 @@
 use crate::along;
 use crate::attempt::Attempt;
 use crate::better::{SETTLED, is_clearly_better, is_near_noise, merit};
+use crate::bias;
 use crate::clock::Clock;
 use crate::curves;
 use crate::diagnosis::{Diagnosis, Explained, Rival, Verdict};
@@ -158,10 +159,34 @@ fn prepare<'w>(
         plant = Plant::new(scenario);
         (tapes, built) = load(&mut plant, set)?;
     }
+    said.extend(deliver(&mut plant, (&mut tapes, &mut built), (set, parts), work)?);
     let mut begun = begin(&plant, (&built, tapes), set, parts, &mut clock)?;
     said.extend(pace::said_of_scheme(own, &plant));
     begun.said.extend(said);
     Ok(Prepared { plant, inspection, begun, clock })
+}
+
+/// Raises what drives may deliver where a recording follows commands beyond it; what was raised, in words.
+fn deliver(
+    plant: &mut Plant,
+    (tapes, built): (&mut Vec<Tape>, &mut Built),
+    (set, parts): (&RecordingSet, f64),
+    work: &Work<'_>,
+) -> Result<Vec<String>, DiagnoseError> {
+    let mut said = Vec::new();
+    for asked in limits::asked_beyond(built, tapes) {
+        let Some((scenario, words)) = asked.raised(plant, built) else { continue };
+        let mut raised = Plant::new(scenario);
+        let (raised_tapes, raised_built) = load(&mut raised, set)?;
+        let windows = cut(built, tapes, Some(window_of(set, tapes, parts)), |t| t.role == Role::Fit);
+        let pace = Pace::even(plant.scenario.integrator.step_s);
+        let stage = Stage { tapes, pace, work, doubt: noise::STATED };
+        if asked.is_delivered(&stage, [built, &raised_built], &windows) {
+            (*plant, *tapes, *built) = (raised, raised_tapes, raised_built);
+            said.push(words);
+        }
+    }
+    Ok(said)
 }
 
 /// The same in so many windows of the longest run.
@@ -179,7 +204,7 @@ fn diagnose_in(
         seek(&mut stage, &plant, (nominal, &tapes, window), &mut clock)?;
     clock.stage("fit to all samples", 0.75);
     let follows = standing.follows();
-    let discretisation = suited(&stage, &standing, discretisation);
+    let discretisation = suited(&stage, &plant, &standing, discretisation)?;
     stage.pace = discretisation.pace;
     let (thin, stage) = (stage, Stage { tapes: &tapes, ..stage });
     // What only concerns the nominal model bears its own steps.
@@ -432,11 +457,16 @@ fn fit_to_all((thin, all): (&Stage<'_>, &Stage<'_>), plant: &Plant, standing: St
 }
 
 /// Steps that suit the corrected model over what it is judged by: what was found may be faster than what the nominal model has.
-fn suited(stage: &Stage<'_>, standing: &Standing, chosen: Discretisation) -> Discretisation {
+fn suited(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    standing: &Standing,
+    chosen: Discretisation,
+) -> Result<Discretisation, DiagnoseError> {
     let judged = standing.judge();
     match judged.set.has_findings() && judged.rms() <= pace::NEAR {
-        true => pace::suited(stage, (&judged.built, &judged.segments), judged.count),
-        false => Discretisation { pace: stage.pace, ..chosen },
+        true => bias::suited(stage, plant, judged),
+        false => Ok(Discretisation { pace: stage.pace, ..chosen }),
     }
 }
 

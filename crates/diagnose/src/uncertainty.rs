@@ -6,16 +6,15 @@
 //! - scatter: (A⁻¹ M A⁻¹)ᵢᵢ with M the scatter of the segments' gradients about their mean (the sandwich of White 1982);
 //! - profile: how far one number must go, the others along with it and every start settled anew, for the cost to rise by 4, the
 //!   point two standard errors out;
-//! - step: what steps of half the length would move the numbers by, −A⁻¹ G⊥ᵀ(r_half − r), added as a variance.
+//! - step: what ever shorter steps would move the numbers by, twice what those of half the length do (first order), −2 A⁻¹ G⊥ᵀ(r_half − r), added as a variance.
 
+use crate::bias::Halved;
 use crate::error::DiagnoseError;
 use crate::fit::{Fit, pseudo_inverse};
-use crate::linear::{Segment, SegmentLinear, Stage, Variation, eliminate};
+use crate::linear::{Segment, SegmentLinear, Stage};
 use crate::pace;
 use crate::plant::Plant;
-use crate::screen::vary_active;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 /// Errors of a set's fitted numbers.
 #[derive(Clone, Debug, Default)]
@@ -34,6 +33,8 @@ const TWO_SIGMA: f64 = 4.0;
 const DISTANCES: [f64; 4] = [2.0, 8.0, 32.0, 128.0];
 /// Growth of an error by the profile below which the curvature has told the same.
 const SAME: f64 = 1.1;
+/// What ever shorter steps move, in what halved ones do, where errors are in proportion to them.
+const TO_THE_END: f64 = 2.0;
 /// Segments that a scatter wants at least.
 const SCATTERED: usize = 3;
 
@@ -44,21 +45,10 @@ pub(crate) fn estimate(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<
     if n == 0 {
         return Ok(Uncertainty::default());
     }
-    let variations = vary_active(plant, found)?;
-    let linear: Vec<SegmentLinear> =
-        found.segments.par_iter().map(|s| linearised(stage, found, s, &variations)).collect();
-    let mut a = DMatrix::zeros(n + 1, n + 1);
-    found.set.add_prior(&mut a);
-    let a: DMatrix<f64> = linear
-        .iter()
-        .map(|l| l.reduced.view((0, 0), (n, n)).into_owned())
-        .fold(a.view((0, 0), (n, n)).into_owned(), |sum, own| sum + own);
-    let inverse = pseudo_inverse(&a);
+    let Halved { linear, curvature: a, inverse, shift, .. } = Halved::new(stage, plant, found, pace::half(stage.pace))?;
     let gradients: Vec<DVector<f64>> =
         linear.iter().map(|l| l.reduced.view((0, n + 1), (n, 1)).column(0).into()).collect();
     let scatter = calc_scatter(&inverse, &gradients);
-    let by_step: DVector<f64> = linear.iter().map(|l| DVector::from(l.reduced.view((0, n), (n, 1)).column(0))).sum();
-    let shift = -(&inverse * by_step);
     let mut widths = DVector::zeros(n);
     let mut from_profile = vec![false; n];
     for i in 0..n {
@@ -70,26 +60,12 @@ pub(crate) fn estimate(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<
         let curvature = inverse[(i, i)].max(0.0).sqrt();
         let profile = calc_profile(stage, plant, (found, &linear), (&inverse, i));
         from_profile[i] = profile > SAME * curvature && profile.powi(2) >= scatter[i];
-        widths[i] = curvature.powi(2).max(scatter[i]).max(profile.powi(2)) + shift[i].powi(2);
+        widths[i] = curvature.powi(2).max(scatter[i]).max(profile.powi(2)) + (TO_THE_END * shift[i]).powi(2);
     }
     let growth = |i: usize| if inverse[(i, i)] > 0.0 { (widths[i] / inverse[(i, i)]).sqrt() } else { 1.0 };
     let covariance = DMatrix::from_fn(n, n, |i, j| growth(i) * growth(j) * inverse[(i, j)]);
     let optimism = calc_optimism(&a, &linear, &found.segments);
     Ok(Uncertainty { covariance, from_profile, optimism })
-}
-
-/// Products of one segment: of its parameters' columns, of what a step of half the length moves, and of its residual.
-fn linearised(stage: &Stage<'_>, found: &Fit, segment: &Segment, variations: &[Variation]) -> SegmentLinear {
-    let r = stage.residuals(&found.built, segment);
-    let (coarse, base) = stage.beside(&found.built, segment, &r);
-    let start = coarse.columns_of(&found.built, segment, &base);
-    let finer = Stage { pace: pace::half(stage.pace), ..*stage };
-    let moved = finer.residuals(&found.built, segment) - &r;
-    let moved = if moved.iter().all(|x| x.is_finite()) { moved } else { DVector::zeros(r.len()) };
-    let columns = coarse.columns_by(segment, &base, variations, true);
-    let starts: Vec<&DVector<f64>> = start.columns.iter().collect();
-    let others: Vec<&DVector<f64>> = columns.iter().chain([&moved, &r]).collect();
-    SegmentLinear { columns: Some(start.clone()), ..eliminate(&starts, &others, &start.freedoms) }
 }
 
 /// Diagonal of A⁻¹ M A⁻¹; zeros where there are too few segments to scatter.

@@ -49,6 +49,20 @@ fn a_speed_limit_that_the_rig_passes_is_raised_said_and_written() {
     assert!((raised - free).abs() < 1e-6, "{raised} {free}");
 }
 
+#[test]
+fn commands_beyond_a_drive_are_delivered_where_the_recording_says_so_and_cut_where_it_does_not() {
+    let weak = "actuator.hinge.limit_n_m=1.0";
+    let is_raised = |d: &Diagnosis| d.remarks.iter().any(|r| r.contains("actuator[0].limit_n_m="));
+    let strong = diagnosed(swing(&[weak]), &recording());
+    assert_eq!((strong.verdict, found(&strong)), (Verdict::Explained, vec![FRICTION]));
+    assert!(is_raised(&strong), "{:?}", strong.remarks);
+    let mut rig = swing(&[weak]);
+    rig.effects.push(effect(FRICTION, "joint:hinge", &[("b", number(0.3))]));
+    let cut = diagnosed(swing(&[weak]), &synthesise(rig, &swings(), &as_recorded, 3).unwrap());
+    assert_eq!((cut.verdict, found(&cut)), (Verdict::Explained, vec![FRICTION]));
+    assert!(!is_raised(&cut), "{:?}", cut.remarks);
+}
+
 /// The same with every series of a channel renamed, or added by another name.
 fn with_efforts(set: &RecordingSet, name: &str, keeps: bool, gain: f64) -> RecordingSet {
     let mut set = set.clone();

@@ -139,6 +139,17 @@ impl Scenario {
         Some(text)
     }
 
+    /// Sets what an actuator delivers at most to its joints, N·m or N, and gives the override that does the same.
+    ///
+    /// Other kinds of actuators have no such key: none.
+    pub fn set_effort_limit(&mut self, actuator: usize, (limit, slides): (f64, bool)) -> Option<String> {
+        self.actuators.get_mut(actuator)?.kind.joint_effort_limit_mut(slides)?.replace(limit);
+        let unit = if slides { "n" } else { "n_m" };
+        let text = format!("actuator[{actuator}].limit_{unit}={limit:?}");
+        self.source.overrides.push(text.clone());
+        Some(text)
+    }
+
     /// Where a value was written: the nearest place in the file, or the override that set it.
     ///
     /// `path` is as for `--set`. Of a path that the file leaves out, the innermost table that is there is given.

@@ -225,6 +225,16 @@ impl ActuatorKind {
         Some(if slides { sliding } else { turning })
     }
 
+    /// The key of what it delivers at most to turning or sliding joints; none of an actuator that drives no joint.
+    pub(crate) fn joint_effort_limit_mut(&mut self, slides: bool) -> Option<&mut Option<f64>> {
+        let [turning, sliding] = match self {
+            Self::JointTorque { limit_n_m, limit_n, .. } => [limit_n_m, limit_n],
+            Self::JointDrive(drive) => [&mut drive.limit_n_m, &mut drive.limit_n],
+            Self::Thruster { .. } | Self::ReactionWheel { .. } | Self::LatchRelease { .. } => return None,
+        };
+        Some(if slides { sliding } else { turning })
+    }
+
     /// Rotor inertia (kg·m²) or mass (kg) as its joints feel it, and whether it is a mass.
     pub fn reflected_inertia(&self) -> Option<(f64, bool)> {
         let (inertia, mass) = match self {
