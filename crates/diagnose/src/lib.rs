@@ -17,6 +17,7 @@ mod choice;
 mod clock;
 mod condition;
 mod curves;
+mod delivery;
 mod detect;
 pub mod diagnosis;
 pub mod error;

@@ -3,12 +3,7 @@
 //!
 //! The velocity limit of a URDF is often a planner's. Where a recorded joint is faster while its command pushes it on, the rig has no
 //! such limit: it is raised, and that is said; a model that stops pushing there would be off by more than any effect.
-//!
-//! Commands beyond what a drive may deliver are another matter: some rigs cut them, some do not. Windows in which there are such commands tell: they are
-//! followed by both models, and the limit is raised where that follows them clearly better.
 
-use crate::fit::Effort;
-use crate::linear::{Segment, Stage};
 use crate::number::short;
 use crate::plant::{Built, Plant};
 use crate::reading::{Reading, Value};
@@ -20,15 +15,15 @@ use sim::ActuatorKind;
 use std::collections::BTreeSet;
 
 /// Samples beyond a limit that are no outliers: so many, or this share of all.
-const SAMPLES: usize = 5;
+pub(crate) const SAMPLES: usize = 5;
 const SHARE: f64 = 1e-3;
 /// Standard deviations of a sample, and share of the limit, by which it is passed beyond doubt.
 const DEVIATIONS: f64 = 4.0;
-const MARGIN: f64 = 0.01;
+pub(crate) const MARGIN: f64 = 0.01;
 /// Samples between two positions that tell a speed.
 const APART: usize = 8;
 /// The limit that is put in its place, in largest speeds seen: far enough that nothing a corrected model does comes near.
-const RAISED: f64 = 2.0;
+pub(crate) const RAISED: f64 = 2.0;
 
 /// The scenario without the speed limits that its recording passes, and which these are, in words; none where it passes none.
 pub(crate) fn raised(plant: &Plant, built: &Built, tapes: &[Tape]) -> Option<(Scenario, String)> {
@@ -50,68 +45,6 @@ pub(crate) fn raised(plant: &Plant, built: &Built, tapes: &[Tape]) -> Option<(Sc
         )
     };
     (!passed.is_empty()).then(|| (scenario, words()))
-}
-
-/// Windows with commands beyond a limit that are looked at, and share of their costs (geometric mean) below which there is none.
-const LOOKED_AT: usize = 12;
-const CLEARLY: f64 = 0.8;
-
-/// An actuator of the scenario that is asked for more than it may deliver, and the most that it is asked for.
-pub(crate) struct Asked {
-    /// Index in the model.
-    actuator: usize,
-    limit: f64,
-    most: f64,
-}
-
-/// The actuators that are asked for more than they may deliver.
-pub(crate) fn asked_beyond(built: &Built, tapes: &[Tape]) -> Vec<Asked> {
-    let of = |(actuator, a): (usize, &sim::Actuator)| {
-        let ActuatorKind::JointEffort { limit, .. } = a.kind else { return None };
-        let values =
-            tapes.iter().flat_map(|t| &t.commands).filter(|c| c.is_effort_of(actuator)).flat_map(|c| &c.values);
-        let mut beyond: Vec<f64> = values.map(|v| v.abs()).filter(|v| *v > (1.0 + MARGIN) * limit).collect();
-        beyond.sort_by(|a, b| b.total_cmp(a));
-        (beyond.len() > SAMPLES).then(|| Asked { actuator, limit, most: beyond[0] })
-    };
-    built.model.actuators.iter().enumerate().filter_map(of).collect()
-}
-
-impl Asked {
-    /// The scenario with the limit so high that nothing is cut, and which it was, in words.
-    pub(crate) fn raised(&self, plant: &Plant, built: &Built) -> Option<(Scenario, String)> {
-        let actuator = &built.model.actuators[self.actuator];
-        let ActuatorKind::JointEffort { coordinate, .. } = actuator.kind else { return None };
-        let mut scenario = plant.scenario.clone();
-        let at = scenario.actuators.iter().position(|s| s.name == actuator.name)?;
-        let now = scenario.set_effort_limit(at, (RAISED * self.most, built.model.slides(coordinate)))?;
-        let words = format!(
-            "{} was asked for up to {} where the scenario lets it deliver {}; the recording follows a drive that delivers that, and the limit is raised: {now}.",
-            actuator.name,
-            short(self.most),
-            short(self.limit)
-        );
-        Some((scenario, words))
-    }
-
-    /// Whether windows with such commands are followed clearly better by a model that delivers them.
-    pub(crate) fn is_delivered(&self, stage: &Stage<'_>, [own, raised]: [&Built; 2], windows: &[Segment]) -> bool {
-        let has_such = |s: &&Segment| {
-            let own = stage.tapes[s.run].commands.iter().filter(|c| c.is_effort_of(self.actuator));
-            let is_beyond =
-                |(t, v): (&f64, &f64)| (s.span.from..s.span.to).contains(t) && v.abs() > (1.0 + MARGIN) * self.limit;
-            own.flat_map(|c| c.times.iter().zip(&c.values)).any(is_beyond)
-        };
-        let such: Vec<&Segment> = windows.iter().filter(has_such).collect();
-        let every = such.len().div_ceil(LOOKED_AT).max(1);
-        let some: Vec<Segment> = such.into_iter().step_by(every).cloned().collect();
-        let costs = |built: &Built| -> Vec<f64> {
-            stage.fit_starts(built, &some, Effort::JUDGED).iter().map(|s| s.cost).collect()
-        };
-        let ratios = costs(raised).into_iter().zip(costs(own)).map(|(b, a)| (b / a).ln()).filter(|l| l.is_finite());
-        let (sum, count) = ratios.fold((0.0, 0), |(sum, count), l| (sum + l, count + 1));
-        count > 0 && sum / f64::from(count) < CLEARLY.ln()
-    }
 }
 
 /// The largest speed at which a joint was pushed on that outliers do not explain, where it is beyond the limit.
@@ -159,11 +92,6 @@ fn speeds_of(reading: &Reading, coordinate: usize) -> Vec<(f64, f64, f64)> {
 }
 
 impl CommandTape {
-    /// Whether it is what an actuator is asked to deliver.
-    fn is_effort_of(&self, actuator: usize) -> bool {
-        self.actuator == actuator && self.what == Commanded::Effort
-    }
-
     /// The command that is held at an instant; the first one before it begins.
     fn at(&self, time: f64) -> f64 {
         let next = self.times.partition_point(|t| *t <= time);

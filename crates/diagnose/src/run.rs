@@ -11,6 +11,7 @@ use crate::better::{SETTLED, is_clearly_better, is_near_noise, merit};
 use crate::bias;
 use crate::clock::Clock;
 use crate::curves;
+use crate::delivery::{self, Raised};
 use crate::diagnosis::{Diagnosis, Explained, Rival, Verdict};
 use crate::error::DiagnoseError;
 use crate::evidence::{self, Evidence};
@@ -159,34 +160,16 @@ fn prepare<'w>(
         plant = Plant::new(scenario);
         (tapes, built) = load(&mut plant, set)?;
     }
-    said.extend(deliver(&mut plant, (&mut tapes, &mut built), (set, parts), work)?);
+    let window = window_of(set, &tapes, parts);
+    if let Some((scenario, words)) = delivery::delivered(&plant, &[], (&tapes, window), work)? {
+        said.extend(words);
+        plant = plant.of(scenario);
+        built = plant.build(&[])?;
+    }
     let mut begun = begin(&plant, (&built, tapes), set, parts, &mut clock)?;
     said.extend(pace::said_of_scheme(own, &plant));
     begun.said.extend(said);
     Ok(Prepared { plant, inspection, begun, clock })
-}
-
-/// Raises what drives may deliver where a recording follows commands beyond it; what was raised, in words.
-fn deliver(
-    plant: &mut Plant,
-    (tapes, built): (&mut Vec<Tape>, &mut Built),
-    (set, parts): (&RecordingSet, f64),
-    work: &Work<'_>,
-) -> Result<Vec<String>, DiagnoseError> {
-    let mut said = Vec::new();
-    for asked in limits::asked_beyond(built, tapes) {
-        let Some((scenario, words)) = asked.raised(plant, built) else { continue };
-        let mut raised = Plant::new(scenario);
-        let (raised_tapes, raised_built) = load(&mut raised, set)?;
-        let windows = cut(built, tapes, Some(window_of(set, tapes, parts)), |t| t.role == Role::Fit);
-        let pace = Pace::even(plant.scenario.integrator.step_s);
-        let stage = Stage { tapes, pace, work, doubt: noise::STATED };
-        if asked.is_delivered(&stage, [built, &raised_built], &windows) {
-            (*plant, *tapes, *built) = (raised, raised_tapes, raised_built);
-            said.push(words);
-        }
-    }
-    Ok(said)
 }
 
 /// The same in so many windows of the longest run.
@@ -262,7 +245,16 @@ fn diagnose_whole(
     let own = Facts::new(&nominal.built, few.tapes);
     let located = locate(few, plant, &nominal, places(&own, window))?;
     clock.stage("search", 0.25);
+    if let Some(raised) = delivery::missing_beyond_limits(few, plant, &own)? {
+        return diagnose_raised(raised, set, work);
+    }
     let course = along::seek(few, plant, &own)?;
+    // Beside what was found a drive may be seen to deliver what is asked of it.
+    if !course.left[1].is_noise()
+        && let Some(raised) = delivery::delivered(plant, &course.found.best.set.effects(), (few.tapes, window), work)?
+    {
+        return diagnose_raised(raised, set, work);
+    }
     clock.stage("fit to all samples", 0.7);
     let (course, discretisation) = along::at_suiting_steps(few, plant, &own, (course, window), discretisation)?;
     let few = &Stage { pace: discretisation.pace, ..*few };
@@ -303,6 +295,18 @@ fn diagnose_whole(
         discretisation,
     };
     Ok(Some(tell::tell(&findings, &stage, &inspection, &plant.scenario, &set.folder)))
+}
+
+/// The same of a scenario whose limits were raised.
+fn diagnose_raised(
+    (scenario, words): Raised,
+    set: &RecordingSet,
+    work: &Work<'_>,
+) -> Result<Option<(Diagnosis, Evidence)>, DiagnoseError> {
+    words.iter().for_each(|w| work.watch.step(w));
+    let mut found = diagnose_whole(scenario, set, &work.anew())?;
+    found.iter_mut().for_each(|(diagnosis, _)| diagnosis.remarks.extend(words.iter().cloned()));
+    Ok(found)
 }
 
 /// What whole runs and windows are predicted to be, by the nominal and by the corrected model.
@@ -464,9 +468,13 @@ fn suited(
     chosen: Discretisation,
 ) -> Result<Discretisation, DiagnoseError> {
     let judged = standing.judge();
-    match judged.set.has_findings() && judged.rms() <= pace::NEAR {
-        true => bias::suited(stage, plant, judged),
-        false => Ok(Discretisation { pace: stage.pace, ..chosen }),
+    if !judged.set.has_findings() || judged.rms() > pace::NEAR {
+        return Ok(Discretisation { pace: stage.pace, ..chosen });
+    }
+    // What is left may be what rough steps leave, which no derivative tells.
+    match judged.is_significant() {
+        true => Ok(pace::suited(stage, (&judged.built, &judged.segments), judged.count)),
+        false => bias::suited(stage, plant, judged),
     }
 }
 

@@ -4,7 +4,8 @@
 //!
 //! E₀ and E₁ are mean squares in units of noise of the nominal and of the corrected model, each window with an initial state of its own under
 //! either model; noise alone leaves 1. Where no run was left out, those of the fit stand for them, and that is said. The interval is
-//! the middle 95 % of S over resampled windows, run by run (stratified bootstrap: Efron and Tibshirani 1993, ch. 8). A model *helps*
+//! the middle 95 % of S over resampled windows (bootstrap: Efron and Tibshirani 1993, ch. 13); windows in which either model leaves more
+//! than noise are resampled, of the others there is nothing to tell: where parts meet once in a run, one window of many holds all. A model *helps*
 //! where that interval, or that of the windows' mean logarithm of E₀/E₁, lies above zero and no run is predicted worse than before: a law
 //! that mends one run and breaks another is none. Few windows may hold nearly all of the mismatch, where a model goes astray within them and
 //! mean squares say by chance how far; the logarithm counts every window alike.
@@ -50,6 +51,11 @@ impl Window {
         (self.before.max(self.count) / self.after.max(self.count)).ln()
     }
 
+    /// Whether either model leaves more than noise may.
+    fn tells(&self, doubt: f64) -> bool {
+        self.before.max(self.after) - self.count > SIGMAS * (2.0 * self.count).sqrt() + doubt * self.count
+    }
+
     /// Whether the corrected model is clearly worse; `doubt`: cost per scalar that is not told from a wrong noise level.
     fn is_harmed(&self, doubt: f64) -> bool {
         let [before, after] = [self.before, self.after].map(|cost| cost - self.count);
@@ -63,12 +69,14 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
     let left_out = judging == Role::Holdout;
     let runs = windows_of(judgement, |run| tapes[run].role == judging);
     let all = sum(runs.values().flatten());
-    let interval = interval(&runs, share_of);
     let harmed = runs.iter().filter(|(_, w)| sum(w.iter()).is_harmed(found.doubt));
     let harmed: Vec<String> = harmed.map(|(run, _)| tapes[*run].file.clone()).collect();
-    let is_gain = || all.share() > 0.0 && self::interval(&runs, mean_log_gain)[0] > 0.0;
+    let count = runs.len();
+    let runs = &telling(&runs, found.doubt);
+    let interval = interval(runs, share_of);
+    let is_gain = || all.share() > 0.0 && self::interval(runs, mean_log_gain)[0] > 0.0;
     let helps = (interval[0] > 0.0 || is_gain()) && harmed.is_empty();
-    (Explained { share: all.share(), interval, window_s, runs: runs.len(), left_out, harmed }, helps)
+    (Explained { share: all.share(), interval, window_s, runs: count, left_out, harmed }, helps)
 }
 
 /// Windows by run.
@@ -91,6 +99,16 @@ fn windows_of(judgement: &Judgement, wanted: impl Fn(usize) -> bool) -> BTreeMap
     runs
 }
 
+/// Those windows that tell something of either model; all where none does.
+fn telling(runs: &BTreeMap<usize, Vec<Window>>, doubt: f64) -> BTreeMap<usize, Vec<Window>> {
+    let of = |(run, windows): (&usize, &Vec<Window>)| {
+        let own: Vec<Window> = windows.iter().filter(|w| w.tells(doubt)).copied().collect();
+        (!own.is_empty()).then_some((*run, own))
+    };
+    let told: BTreeMap<usize, Vec<Window>> = runs.iter().filter_map(of).collect();
+    if told.is_empty() { runs.clone() } else { told }
+}
+
 /// Mean square that stands for a replay that left the range of numbers.
 const DIVERGED: f64 = 1e12;
 
@@ -110,11 +128,9 @@ fn mean_log_gain(windows: &[&Window]) -> f64 {
 /// The middle 95 % of what resampled windows say.
 fn interval(runs: &BTreeMap<usize, Vec<Window>>, of: fn(&[&Window]) -> f64) -> [f64; 2] {
     let mut random = ChaCha8Rng::seed_from_u64(0);
+    let all: Vec<&Window> = runs.values().flatten().collect();
     let mut draw = || {
-        let mut drawn: Vec<&Window> = Vec::new();
-        for windows in runs.values() {
-            drawn.extend((0..windows.len()).map(|_| &windows[(random.next_u64() % windows.len() as u64) as usize]));
-        }
+        let drawn: Vec<&Window> = all.iter().map(|_| all[(random.next_u64() % all.len() as u64) as usize]).collect();
         of(&drawn)
     };
     let mut said: Vec<f64> = (0..DRAWS).map(|_| draw()).collect();
@@ -138,6 +154,17 @@ mod tests {
         assert_eq!(window(90.0, 80.0).share(), 0.0);
         let runs = BTreeMap::from([(0, vec![window(1100.0, 100.0); 5]), (1, vec![window(300.0, 100.0); 5])]);
         assert_eq!(interval(&runs, share_of), [1.0, 1.0]);
+    }
+
+    #[test]
+    fn one_window_in_each_run_where_parts_meet_tells_what_all_others_cannot() {
+        let run = |before, after| [vec![window(100.0, 100.0); 11], vec![window(before, after)]].concat();
+        let runs = BTreeMap::from([(3, run(5e3, 8e2)), (4, run(9e3, 4e3))]);
+        assert_eq!(interval(&runs, share_of)[0], 0.0, "some draws have neither");
+        let [low, high] = interval(&telling(&runs, 0.03), share_of);
+        assert!((low - 5e3 / 8.9e3).abs() < 1e-12 && (high - 4.2e3 / 4.9e3).abs() < 1e-12, "{low} {high}");
+        let noise = BTreeMap::from([(0, vec![window(90.0, 99.0)])]);
+        assert_eq!(telling(&noise, 0.03), noise);
     }
 
     #[test]

@@ -98,8 +98,11 @@ fn beside_flights(
     let said = [nominal, &flying].map(|fit| format!("{:.3}", fit.rms())).join(" → ");
     stage.work.watch.step(&format!("windows with what was found in flight: error {said}"));
     let (mut standing, _) = stood(stage, &with, (&flying, window))?;
-    // A flight as a whole tells its begin better than the window that begins there.
-    standing.whole = follow(stage, &with, EffectSet::default(), &begun(&standing.whole.segments))?;
+    // A flight as a whole may tell its begin better than the window that begins there.
+    let by_flights = follow(stage, &with, EffectSet::default(), &begun(&standing.whole.segments))?;
+    if by_flights.rms() < standing.whole.rms() {
+        standing.whole = by_flights;
+    }
     let others = |stage: &Stage<'_>, now: &Fit| {
         let mut all = candidates(stage, now)?;
         all.retain(|h| !set.has_finding(h));

@@ -203,7 +203,7 @@ fn silent(tape: &Tape, commands: Vec<CommandTape>) -> Tape {
 
 impl CommandTape {
     /// Its mean between two instants; nothing before its first tick.
-    fn mean(&self, from: f64, to: f64) -> f64 {
+    pub(crate) fn mean(&self, from: f64, to: f64) -> f64 {
         let at = |t: f64| self.times.partition_point(|x| *x <= t + SAME);
         let held = |i: usize| i.checked_sub(1).map_or(0.0, |i| self.values[i]);
         if to - from <= SAME {

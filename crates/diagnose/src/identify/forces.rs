@@ -20,6 +20,13 @@ pub struct Force {
     pub size: f64,
 }
 
+impl Force {
+    /// Whether it is that on a joint's coordinate.
+    pub(crate) fn acts_on(&self, coordinate: usize) -> bool {
+        matches!(self.along, Along::Joint(own) if own == coordinate)
+    }
+}
+
 /// Where a force acts, and what one of unit size is.
 #[derive(Clone, Copy, Debug)]
 enum Along {
