@@ -40,6 +40,8 @@ pub(super) struct Bounds {
     pub(super) cheapest: f64,
     /// What the unknown forces beside the nominal model do.
     pub(super) all: f64,
+    /// Whether what is left is so little that the laws may make it themselves: what does not promise its price is not looked at then.
+    pub(super) is_own: bool,
 }
 
 /// Fits the sets that promise most in full simulation; the best of them, taken to the end, where it is worth its price, and the best of those with fewer effects.
@@ -47,7 +49,7 @@ pub(super) fn fit_sets(
     problem: &Problem<'_>,
     begun: &Fitted,
     looked: &Looked,
-    Bounds { round, many, cheapest, all }: Bounds,
+    Bounds { round, many, cheapest, all, is_own }: Bounds,
     tried: &mut Vec<Tried>,
 ) -> Result<Option<(Fitted, Option<Fitted>)>, DiagnoseError> {
     let mut now = begun;
@@ -65,7 +67,7 @@ pub(super) fn fit_sets(
         let added: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
         done.push(pool.titles(set.members.iter().map(|m| m.0)));
         let costs = pool.price(&set.members.iter().map(|m| m.0).collect::<Vec<_>>(), now.count);
-        if enough.iter().any(|known| known.outdoes(&added, costs)) {
+        if enough.iter().any(|known| known.outdoes(&added, costs)) || is_own && now.score - set.score < costs {
             continue;
         }
         let fit = fit_first(problem, now, &set, pool, (many, here));

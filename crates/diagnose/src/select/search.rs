@@ -65,6 +65,8 @@ pub(super) const FURTHER: [f64; 2] = [0.2, 0.75];
 const SMALL: f64 = 0.01;
 /// Share of what the unknown forces do (their power) that may be what steps and difference quotients make of the laws that were found.
 const OWN: f64 = 1e-5;
+/// Share of such a remainder (rise of −2 log likelihood) that something has to take to be more than that.
+const NEARLY: f64 = 0.9;
 /// Share of what the unknown forces do below which nothing is left to add.
 pub const NEXT_TO_NOTHING: f64 = 1e-3;
 /// Iterations of a first fit, and to the end.
@@ -154,11 +156,15 @@ impl Search<'_> {
             let mut candidates = open(self.known.clone(), &now, problem, &bare);
             candidates.retain(|h| !self.refused.contains(&h.title()));
             let cheapest = candidates.iter().map(|h| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
-            let bounds = Bounds { round, many, cheapest, all };
+            let left = left_of(problem, &now, &bare).rise;
+            // What is so little may be the laws' own; what takes nearly all of it is not.
+            let is_own = round > 0 && problem.power(&now) < OWN * all;
+            let bounds = Bounds { round, many, cheapest, all, is_own };
             // A nominal model that leaves nothing is still asked what these recordings can show.
-            let is_done =
-                round > 0 && (problem.power(&now) < OWN * all || left_of(problem, &now, &bare).rise < cheapest);
-            let next = if round > 0 { corrected(problem, &now, (&mut self.numbers, is_done), bounds)? } else { None };
+            let is_done = round > 0 && left < cheapest;
+            let is_settled = is_done || is_own;
+            let next =
+                if round > 0 { corrected(problem, &now, (&mut self.numbers, is_settled), bounds)? } else { None };
             if let Some(next) = next {
                 now = next;
                 continue;
@@ -196,7 +202,10 @@ impl Search<'_> {
         }
         // What takes little of what an accepted set leaves stands for something that is not in the library.
         let left_by = |fit: &Fitted| Left { power: problem.power(fit), spread: fit.spread.clone() };
-        let takes_enough = round == 0 || left_by(&best).takes_its_part_of(&left_by(now), self.all, problem.stage.doubt);
+        let takes_enough = match bounds.is_own {
+            true => remainder(problem, &best)?.rise <= (1.0 - NEARLY) * remainder(problem, now)?.rise,
+            false => round == 0 || left_by(&best).takes_its_part_of(&left_by(now), self.all, problem.stage.doubt),
+        };
         Ok(takes_enough.then_some(best))
     }
 }
@@ -383,14 +392,23 @@ const COOLER: f64 = 0.1;
 
 /// A fit without members that are not worth their price.
 fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64)) -> Result<Fitted, DiagnoseError> {
+    // What leaves much more than they do is not idle, however little that is of all.
+    let may_rise = |now: &Fitted| -> Result<f64, DiagnoseError> {
+        let cheapest = now.set.findings().map(|(h, _)| price(h, now.count, many)).fold(f64::INFINITY, f64::min);
+        Ok(remainder(problem, now)?.rise.max(cheapest) / (1.0 - NEARLY))
+    };
     // Where nominal numbers are free there may be nothing beside them.
     let least = usize::from(!now.set.members.iter().any(|(h, _)| h.is_tolerated()));
     while now.set.findings().count() > least {
         let mut better = None;
+        let most = may_rise(&now)?;
         for m in (0..now.set.members.len()).rev().filter(|m| !now.set.members[*m].0.is_tolerated()) {
             let Ok(glance) = problem.fit(&now, now.set.without(m), GLANCE) else { continue };
             // What is worse by far after two steps does not come back.
-            let leaves_own = |fit: &Fitted| problem.power(fit) < OWN * all && is_as_quiet(&fit.spread, &now.spread);
+            let leaves_own = |fit: &Fitted| {
+                let is_own = problem.power(fit) < OWN * all && is_as_quiet(&fit.spread, &now.spread);
+                is_own && remainder(problem, fit).is_ok_and(|left| left.rise <= most)
+            };
             if criterion(&glance, many) - criterion(&now, many) > FAR && !leaves_own(&glance) {
                 continue;
             }
