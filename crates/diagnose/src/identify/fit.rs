@@ -8,11 +8,11 @@ use super::coarse::{self, Coarse};
 use super::forces::{Force, first_spread, forces};
 use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor, score};
 use super::shown::shown;
+use super::step::{next_sizes, within_bounds};
 use super::track::{Bases, Column, Frame, Interval, Link, Side, Source, Told, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
-use crate::hypothesis::Scale;
 use crate::linear::{Stage, Variation};
 use crate::plant::{Built, Plant};
 use crate::start::Freedom;
@@ -355,6 +355,7 @@ impl<'a> Problem<'a> {
             }
             halved = 0;
             before = Some(now.clone());
+            let found = Estimate { theta: within_bounds(&now.set, &slots, &found), ..found };
             let set = self.possible(&now, now.set.moved(&slots, found.theta.as_slice()))?;
             let tracks = self.moved(&now, &chains, &found);
             now = Fitted { tracks, spread: found.spread, ..self.with(&now, set)? };
@@ -572,18 +573,3 @@ pub fn ridge_of(set: &EffectSet, numbers: usize) -> DMatrix<f64> {
     set.add_prior(&mut ridge);
     ridge
 }
-
-/// Steps of the difference quotients: what moves the fit by a fraction of one standard error.
-fn next_sizes(set: &EffectSet, slots: &[(usize, usize)], covariance: &DMatrix<f64>) -> Vec<f64> {
-    let size = |(i, (m, k)): (usize, &(usize, usize))| {
-        let (h, x) = &set.members[*m];
-        let floor = if h.coordinates[*k].scale == Scale::Log { FLOOR } else { FLOOR * x[*k].abs() };
-        covariance[(i, i)].max(0.0).sqrt().min(WIDEST * x[*k].abs().max(1.0)).max(floor).max(f64::MIN_POSITIVE.sqrt())
-    };
-    slots.iter().enumerate().map(size).collect()
-}
-
-/// Smallest step of a difference quotient, relative.
-const FLOOR: f64 = 1e-6;
-/// Largest, relative to the number or to one.
-const WIDEST: f64 = 0.01;

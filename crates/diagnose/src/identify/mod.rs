@@ -12,4 +12,5 @@ mod halve;
 pub mod marginal;
 mod power;
 mod shown;
+mod step;
 pub mod track;
