@@ -23,25 +23,23 @@ pub(super) fn within_bounds(set: &EffectSet, slots: &[(usize, usize)], found: &E
 
 /// The same with the room that each number has below and above it.
 fn stopped_at(room: &[[f64; 2]], free: &DVector<f64>, c: &DMatrix<f64>) -> DVector<f64> {
-    let (mut theta, mut stopped) = (free.clone(), Vec::<usize>::new());
+    let (mut theta, mut stopped) = (free.clone(), Vec::<(usize, f64)>::new());
     loop {
-        let leaves = |i: &usize| !stopped.contains(i) && (theta[*i] < room[*i][0] || theta[*i] > room[*i][1]);
+        let leaves =
+            |i: &usize| stopped.iter().all(|(of, _)| of != i) && (theta[*i] < room[*i][0] || theta[*i] > room[*i][1]);
         let leaving: Vec<usize> = (0..room.len()).filter(leaves).collect();
         if leaving.is_empty() {
             return theta;
         }
-        stopped.extend(leaving);
+        stopped.extend(leaving.into_iter().map(|i| (i, theta[i].clamp(room[i][0], room[i][1]))));
         let n = stopped.len();
-        let own = DMatrix::from_fn(n, n, |i, j| c[(stopped[i], stopped[j])]);
-        let off = DVector::from_fn(n, |i, _| {
-            let of = stopped[i];
-            free[of].clamp(room[of][0], room[of][1]) - free[of]
-        });
+        let own = DMatrix::from_fn(n, n, |i, j| c[(stopped[i].0, stopped[j].0)]);
+        let off = DVector::from_fn(n, |i, _| stopped[i].1 - free[stopped[i].0]);
         let pull = pseudo_inverse(&own) * &off;
-        theta = DVector::from_fn(theta.len(), |i, _| {
-            free[i] + stopped.iter().enumerate().map(|(k, b)| c[(i, *b)] * pull[k]).sum::<f64>()
+        theta = DVector::from_fn(free.len(), |i, _| {
+            free[i] + stopped.iter().zip(pull.iter()).map(|((of, _), pull)| c[(i, *of)] * pull).sum::<f64>()
         });
-        stopped.iter().zip(off.iter()).for_each(|(of, off)| theta[*of] = free[*of] + off);
+        stopped.iter().for_each(|(of, at)| theta[*of] = *at);
     }
 }
 
@@ -77,7 +75,8 @@ mod tests {
         let theta = stopped_at(&[[-0.5, 9.0], [-9.0, 9.0]], &free, &c);
         let best = -(b[1] + a[(1, 0)] * -0.5) / a[(1, 1)];
         assert!((theta[0] + 0.5).abs() < 1e-12 && (theta[1] - best).abs() < 1e-9, "{theta} {best}");
-        // Where the others would leave their room for it they stop as well.
+        // What would leave its room for another one's sake stops as well, where that ends.
+        assert_eq!(stopped_at(&[[-0.5, 9.0], [1.0, 9.0]], &free, &c).as_slice(), [-0.5, 1.0]);
         assert_eq!(stopped_at(&[[-0.5, 9.0], [-9.0, 0.2]], &free, &c).as_slice(), [-0.5, 0.2]);
     }
 }
