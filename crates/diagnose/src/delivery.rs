@@ -8,7 +8,7 @@
 //! is one where all of it is delivered, and nothing where it is cut; what else is missing there is noise to that. Where it drowns in it, or runs are not
 //! followed as a whole, windows with such commands are followed by both models.
 
-use crate::along;
+use crate::along::{self, Course};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::Effort;
@@ -48,12 +48,26 @@ pub(crate) fn delivered(
     })
 }
 
-/// The same by what is missing along whole runs beside the nominal model.
-pub(crate) fn missing_beyond_limits(
+/// What is found along whole runs, or the scenario with limits raised beside which it is to be sought.
+pub(crate) fn sought_along(
     stage: &Stage<'_>,
     plant: &Plant,
-    own: &Facts,
-) -> Result<Option<Raised>, DiagnoseError> {
+    (own, window): (&Facts, f64),
+) -> Result<Result<Course, Raised>, DiagnoseError> {
+    if let Some(raised) = missing_beyond_limits(stage, plant, own)? {
+        return Ok(Err(raised));
+    }
+    let course = along::seek(stage, plant, own)?;
+    if course.left[1].is_noise() {
+        return Ok(Ok(course));
+    }
+    // Beside what was found a drive may be seen to deliver what is asked of it.
+    let raised = delivered(plant, &course.found.best.set.effects(), (stage.tapes, window), stage.work)?;
+    Ok(raised.map_or(Ok(course), Err))
+}
+
+/// The same by what is missing along whole runs beside the nominal model.
+fn missing_beyond_limits(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Option<Raised>, DiagnoseError> {
     if asked_beyond(&plant.build(&[])?, stage.tapes).is_empty() {
         return Ok(None);
     }

@@ -245,16 +245,10 @@ fn diagnose_whole(
     let own = Facts::new(&nominal.built, few.tapes);
     let located = locate(few, plant, &nominal, places(&own, window))?;
     clock.stage("search", 0.25);
-    if let Some(raised) = delivery::missing_beyond_limits(few, plant, &own)? {
-        return diagnose_raised(raised, set, work);
-    }
-    let course = along::seek(few, plant, &own)?;
-    // Beside what was found a drive may be seen to deliver what is asked of it.
-    if !course.left[1].is_noise()
-        && let Some(raised) = delivery::delivered(plant, &course.found.best.set.effects(), (few.tapes, window), work)?
-    {
-        return diagnose_raised(raised, set, work);
-    }
+    let course = match delivery::sought_along(few, plant, (&own, window))? {
+        Ok(course) => course,
+        Err(raised) => return diagnose_raised(raised, set, work),
+    };
     clock.stage("fit to all samples", 0.7);
     let (course, discretisation) = along::at_suiting_steps(few, plant, &own, (course, window), discretisation)?;
     let few = &Stage { pace: discretisation.pace, ..*few };
@@ -262,9 +256,7 @@ fn diagnose_whole(
     let course = along::told_by_all_runs(few, plant, &own, course)?;
     let thin_best = course.found.best.clone();
     let course = along::fit_to_all((few, &stage), plant, &own, course)?;
-    if work.was_ended() {
-        said.push(SPENT.to_owned());
-    }
+    said.extend(work.was_ended().then(|| SPENT.to_owned()));
     clock.stage("predict every run", 0.8);
     let best = &course.found.best;
     let Predicted { found, follows, judgement } =
