@@ -9,13 +9,15 @@ use nalgebra::{DMatrix, DVector};
 ///
 ///   θ_f ← θ_f + C_fb C_bb⁻¹ (t − θ_b)
 ///
-/// for those b that stop at t (active set: Nocedal and Wright 2006, ch. 16.5, one way).
+/// for those b that stop at t (active set: Nocedal and Wright 2006, ch. 16.5, one way). Only of numbers within tolerances: a law's own shape bends so much on its
+/// way to a bound (how far a bristle yields) that what the others make of that is worth nothing.
 pub(super) fn within_bounds(set: &EffectSet, slots: &[(usize, usize)], found: &Estimate) -> DVector<f64> {
     let room: Vec<[f64; 2]> = slots
         .iter()
         .map(|(m, k)| {
             let (h, x) = &set.members[*m];
-            h.coordinates[*k].bounds.map(|bound| bound - x[*k])
+            let bounds = if h.is_tolerated() { h.coordinates[*k].bounds } else { [f64::NEG_INFINITY, f64::INFINITY] };
+            bounds.map(|bound| bound - x[*k])
         })
         .collect();
     stopped_at(&room, &found.theta, &found.covariance)
