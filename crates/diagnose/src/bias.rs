@@ -13,7 +13,6 @@ use crate::hypothesis::Scale;
 use crate::linear::{Segment, SegmentLinear, Stage, Variation, eliminate};
 use crate::pace::{self, Discretisation};
 use crate::plant::Plant;
-use crate::replay::Pace;
 use crate::screen::vary_active;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -40,11 +39,11 @@ pub(crate) struct Halved {
 }
 
 impl Halved {
-    /// By steps at another pace than the stage has.
-    pub fn new(stage: &Stage<'_>, plant: &Plant, found: &Fit, finer: Pace) -> Result<Self, DiagnoseError> {
+    /// About a fit at the stage's pace.
+    pub fn new(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<Self, DiagnoseError> {
         let n = found.set.slots().len();
         let variations = vary_active(plant, found)?;
-        let of = |s: &Segment| linearised(stage, found, s, (&variations, finer));
+        let of = |s: &Segment| linearised(stage, found, s, &variations);
         let linear: Vec<SegmentLinear> = found.segments.par_iter().map(of).collect();
         let mut prior = DMatrix::zeros(n + 1, n + 1);
         found.set.add_prior(&mut prior);
@@ -75,16 +74,11 @@ fn size_of(set: &EffectSet, (m, k): (usize, usize)) -> f64 {
 }
 
 /// Products of one segment.
-fn linearised(
-    stage: &Stage<'_>,
-    found: &Fit,
-    segment: &Segment,
-    (variations, finer): (&[Variation], Pace),
-) -> SegmentLinear {
+fn linearised(stage: &Stage<'_>, found: &Fit, segment: &Segment, variations: &[Variation]) -> SegmentLinear {
     let r = stage.residuals(&found.built, segment);
     let (coarse, base) = stage.beside(&found.built, segment, &r);
     let start = coarse.columns_of(&found.built, segment, &base);
-    let finer = Stage { pace: finer, ..*stage };
+    let finer = Stage { pace: pace::half(stage.pace), ..*stage };
     let moved = finer.residuals(&found.built, segment) - &r;
     let moved = if moved.iter().all(|x| x.is_finite()) { moved } else { DVector::zeros(r.len()) };
     let columns = coarse.columns_by(segment, &base, variations, true);
@@ -96,17 +90,15 @@ fn linearised(
 /// Steps that suit a corrected model, said: halved, from those of the search, until that moves its numbers by no more than they are sure, or by next to nothing.
 pub(crate) fn suited(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<Discretisation, DiagnoseError> {
     let mut stage = *stage;
-    let count = found.count.max(1) as f64;
-    for halving in 0..=HALVINGS {
-        let finer = pace::half(stage.pace);
-        let halved = Halved::new(&stage, plant, found, finer)?;
-        let worst = (halved.left / count).sqrt();
-        if halved.is_fine(found) || halving == HALVINGS {
-            let found = Discretisation { pace: stage.pace, worst };
-            stage.work.watch.step(&found.words());
-            return Ok(found);
+    let mut halved = Halved::new(&stage, plant, found)?;
+    for _ in 0..HALVINGS {
+        if halved.is_fine(found) {
+            break;
         }
-        stage.pace = finer;
+        stage.pace = pace::half(stage.pace);
+        halved = Halved::new(&stage, plant, found)?;
     }
-    Ok(Discretisation { pace: stage.pace, worst: f64::INFINITY })
+    let suited = Discretisation { pace: stage.pace, worst: (halved.left / found.count.max(1) as f64).sqrt() };
+    stage.work.watch.step(&suited.words());
+    Ok(suited)
 }

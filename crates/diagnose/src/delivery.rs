@@ -35,14 +35,14 @@ const SURE: f64 = 3.0;
 /// A scenario whose drives deliver what a recording follows beyond their limits, beside some effects, and which these are, in words; none where it follows
 /// nothing beyond them.
 pub(crate) fn delivered(
-    plant: &Plant,
+    (plant, built): (&Plant, &Built),
     effects: &[Effect],
     (tapes, window): (&[Tape], f64),
     work: &Work<'_>,
 ) -> Result<Option<Raised>, DiagnoseError> {
     let pace = Pace::even(plant.scenario.integrator.step_s);
     let stage = Stage { tapes, pace, work, doubt: noise::STATED };
-    raised_where((plant, effects, tapes), |asked, [built, raised]| {
+    raised_where((plant, built, effects), tapes, |asked, raised| {
         let windows = cut(built, tapes, Some(window), |t| t.role == Role::Fit);
         asked.is_delivered(&stage, [built, raised], &windows)
     })
@@ -62,18 +62,20 @@ pub(crate) fn sought_along(
         return Ok(Ok(course));
     }
     // Beside what was found a drive may be seen to deliver what is asked of it.
-    let raised = delivered(plant, &course.found.best.set.effects(), (stage.tapes, window), stage.work)?;
+    let best = &course.found.best;
+    let raised = delivered((plant, &best.built), &best.set.effects(), (stage.tapes, window), stage.work)?;
     Ok(raised.map_or(Ok(course), Err))
 }
 
-/// The same by what is missing along whole runs beside the nominal model.
+/// The scenario with limits raised by what is missing along whole runs beside the nominal model.
 fn missing_beyond_limits(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Option<Raised>, DiagnoseError> {
-    if asked_beyond(&plant.build(&[])?, stage.tapes).is_empty() {
+    let built = plant.build(&[])?;
+    if asked_beyond(&built, stage.tapes).is_empty() {
         return Ok(None);
     }
     let problem = along::problem(stage, plant, own, Role::Fit);
     let nominal = problem.begin()?;
-    raised_where((plant, &[], stage.tapes), |asked, _| asked.is_missing(&problem, &nominal))
+    raised_where((plant, &built, &[]), stage.tapes, |asked, _| asked.is_missing(&problem, &nominal))
 }
 
 /// A scenario with limits raised, and which, in words.
@@ -81,20 +83,20 @@ pub(crate) type Raised = (Scenario, Vec<String>);
 
 /// A scenario without those limits of which a test says that what is asked beyond them is delivered.
 fn raised_where(
-    (plant, effects, tapes): (&Plant, &[Effect], &[Tape]),
-    is_delivered: impl Fn(&Asked, [&Built; 2]) -> bool,
+    (plant, built, effects): (&Plant, &Built, &[Effect]),
+    tapes: &[Tape],
+    is_delivered: impl Fn(&Asked, &Built) -> bool,
 ) -> Result<Option<Raised>, DiagnoseError> {
-    let built = plant.build(effects)?;
-    let (mut plant, mut said) = (plant.of(plant.scenario.clone()), Vec::new());
-    for asked in asked_beyond(&built, tapes) {
-        let Some((scenario, words)) = asked.raised(&plant, &built) else { continue };
-        let raised = plant.of(scenario);
-        if is_delivered(&asked, [&built, &raised.build(effects)?]) {
-            plant = raised;
-            said.push(words);
+    let mut found: Option<Raised> = None;
+    for asked in asked_beyond(built, tapes) {
+        let now = found.as_ref().map_or(&plant.scenario, |(scenario, _)| scenario);
+        let Some((scenario, words)) = asked.raised(now, built) else { continue };
+        if is_delivered(&asked, &plant.of(scenario.clone()).build(effects)?) {
+            let said = found.map_or_else(Vec::new, |(_, said)| said);
+            found = Some((scenario, [said, vec![words]].concat()));
         }
     }
-    Ok((!said.is_empty()).then_some((plant.scenario, said)))
+    Ok(found)
 }
 
 /// Windows with commands beyond a limit that are looked at, and share of their costs (geometric mean) below which there is none.
@@ -115,7 +117,7 @@ fn asked_beyond(built: &Built, tapes: &[Tape]) -> Vec<Asked> {
         let ActuatorKind::JointEffort { limit, .. } = a.kind else { return None };
         let values =
             tapes.iter().flat_map(|t| &t.commands).filter(|c| c.is_effort_of(actuator)).flat_map(|c| &c.values);
-        let mut beyond: Vec<f64> = values.map(|v| v.abs()).filter(|v| *v > (1.0 + MARGIN) * limit).collect();
+        let mut beyond: Vec<f64> = values.map(|v| v.abs()).filter(|v| is_beyond(*v, limit)).collect();
         beyond.sort_by(|a, b| b.total_cmp(a));
         (beyond.len() > SAMPLES).then(|| Asked { actuator, limit, most: beyond[0] })
     };
@@ -124,10 +126,10 @@ fn asked_beyond(built: &Built, tapes: &[Tape]) -> Vec<Asked> {
 
 impl Asked {
     /// The scenario with the limit so high that nothing is cut, and which it was, in words.
-    fn raised(&self, plant: &Plant, built: &Built) -> Option<(Scenario, String)> {
+    fn raised(&self, scenario: &Scenario, built: &Built) -> Option<(Scenario, String)> {
         let actuator = &built.model.actuators[self.actuator];
         let ActuatorKind::JointEffort { coordinate, .. } = actuator.kind else { return None };
-        let mut scenario = plant.scenario.clone();
+        let mut scenario = scenario.clone();
         let at = scenario.actuators.iter().position(|s| s.name == actuator.name)?;
         let now = scenario.set_effort_limit(at, (RAISED * self.most, built.model.slides(coordinate)))?;
         let words = format!(
@@ -162,9 +164,8 @@ impl Asked {
     fn is_delivered(&self, stage: &Stage<'_>, [own, raised]: [&Built; 2], windows: &[Segment]) -> bool {
         let has_such = |s: &&Segment| {
             let own = stage.tapes[s.run].commands.iter().filter(|c| c.is_effort_of(self.actuator));
-            let is_beyond =
-                |(t, v): (&f64, &f64)| (s.span.from..s.span.to).contains(t) && v.abs() > (1.0 + MARGIN) * self.limit;
-            own.flat_map(|c| c.times.iter().zip(&c.values)).any(is_beyond)
+            let is_such = |(t, v): (&f64, &f64)| (s.span.from..s.span.to).contains(t) && is_beyond(*v, self.limit);
+            own.flat_map(|c| c.times.iter().zip(&c.values)).any(is_such)
         };
         let such: Vec<&Segment> = windows.iter().filter(has_such).collect();
         let every = such.len().div_ceil(LOOKED_AT).max(1);
@@ -176,6 +177,11 @@ impl Asked {
         let (sum, count) = ratios.fold((0.0, 0), |(sum, count), l| (sum + l, count + 1));
         count > 0 && sum / f64::from(count) < CLEARLY.ln()
     }
+}
+
+/// Whether a command asks for clearly more than a limit.
+fn is_beyond(command: f64, limit: f64) -> bool {
+    command.abs() > (1.0 + MARGIN) * limit
 }
 
 /// Whether missing forces are what is asked beyond a limit, interval by interval.

@@ -43,7 +43,7 @@ const WINDOWS: usize = 24;
 pub struct Discretisation {
     /// The steps that were chosen.
     pub pace: Pace,
-    /// Largest rms difference from steps of half the length, over any window, units of noise.
+    /// Largest rms difference from steps of half the length, over any window, or, by what was found, what of it no start and no number follows; units of noise.
     pub worst: f64,
 }
 

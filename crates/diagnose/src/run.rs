@@ -161,7 +161,7 @@ fn prepare<'w>(
         (tapes, built) = load(&mut plant, set)?;
     }
     let window = window_of(set, &tapes, parts);
-    if let Some((scenario, words)) = delivery::delivered(&plant, &[], (&tapes, window), work)? {
+    if let Some((scenario, words)) = delivery::delivered((&plant, &built), &[], (&tapes, window), work)? {
         said.extend(words);
         plant = plant.of(scenario);
         built = plant.build(&[])?;

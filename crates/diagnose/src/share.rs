@@ -53,13 +53,18 @@ impl Window {
 
     /// Whether either model leaves more than noise may.
     fn tells(&self, doubt: f64) -> bool {
-        self.before.max(self.after) - self.count > SIGMAS * (2.0 * self.count).sqrt() + doubt * self.count
+        self.before.max(self.after) - self.count > self.untold(doubt)
     }
 
-    /// Whether the corrected model is clearly worse; `doubt`: cost per scalar that is not told from a wrong noise level.
+    /// Cost above the expected that is not told from noise; `doubt`: cost per scalar that is not told from a wrong noise level.
+    fn untold(&self, doubt: f64) -> f64 {
+        SIGMAS * (2.0 * self.count).sqrt() + doubt * self.count
+    }
+
+    /// Whether the corrected model is clearly worse.
     fn is_harmed(&self, doubt: f64) -> bool {
         let [before, after] = [self.before, self.after].map(|cost| cost - self.count);
-        after > HARM * before.max(0.0) + SIGMAS * (2.0 * self.count).sqrt() + doubt * self.count
+        after > HARM * before.max(0.0) + self.untold(doubt)
     }
 }
 

@@ -12,7 +12,6 @@ use crate::bias::Halved;
 use crate::error::DiagnoseError;
 use crate::fit::{Fit, pseudo_inverse};
 use crate::linear::{Segment, SegmentLinear, Stage};
-use crate::pace;
 use crate::plant::Plant;
 use nalgebra::{DMatrix, DVector};
 
@@ -45,7 +44,7 @@ pub(crate) fn estimate(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<
     if n == 0 {
         return Ok(Uncertainty::default());
     }
-    let Halved { linear, curvature: a, inverse, shift, .. } = Halved::new(stage, plant, found, pace::half(stage.pace))?;
+    let Halved { linear, curvature: a, inverse, shift, .. } = Halved::new(stage, plant, found)?;
     let gradients: Vec<DVector<f64>> =
         linear.iter().map(|l| l.reduced.view((0, n + 1), (n, 1)).column(0).into()).collect();
     let scatter = calc_scatter(&inverse, &gradients);

@@ -4,7 +4,7 @@ use crate::document::{Node, Origin, Source, read_document};
 use crate::error::{MOST_ERRORS, Place, Problem, ScenarioError, ScenarioErrors};
 use crate::overrides;
 use crate::schema::check;
-use crate::spec::Scenario;
+use crate::spec::{ActuatorKind, Scenario};
 use crate::spelling::hint_for_name;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -132,20 +132,27 @@ impl Scenario {
     ///
     /// Other kinds of actuators have no such key: none.
     pub fn set_speed_limit(&mut self, actuator: usize, (limit, slides): (f64, bool)) -> Option<String> {
-        self.actuators.get_mut(actuator)?.kind.joint_speed_limit_mut(slides)?.replace(limit);
-        let unit = if slides { "m" } else { "rad" };
-        let text = format!("actuator[{actuator}].speed_limit_{unit}_per_s={limit:?}");
-        self.source.overrides.push(text.clone());
-        Some(text)
+        let key = if slides { "speed_limit_m_per_s" } else { "speed_limit_rad_per_s" };
+        self.set_limit((actuator, key), limit, |kind| kind.joint_speed_limit_mut(slides))
     }
 
     /// Sets what an actuator delivers at most to its joints, N·m or N, and gives the override that does the same.
     ///
     /// Other kinds of actuators have no such key: none.
     pub fn set_effort_limit(&mut self, actuator: usize, (limit, slides): (f64, bool)) -> Option<String> {
-        self.actuators.get_mut(actuator)?.kind.joint_effort_limit_mut(slides)?.replace(limit);
-        let unit = if slides { "n" } else { "n_m" };
-        let text = format!("actuator[{actuator}].limit_{unit}={limit:?}");
+        let key = if slides { "limit_n" } else { "limit_n_m" };
+        self.set_limit((actuator, key), limit, |kind| kind.joint_effort_limit_mut(slides))
+    }
+
+    /// Sets a limit of an actuator where it has that key.
+    fn set_limit(
+        &mut self,
+        (actuator, key): (usize, &str),
+        limit: f64,
+        of: impl FnOnce(&mut ActuatorKind) -> Option<&mut Option<f64>>,
+    ) -> Option<String> {
+        of(&mut self.actuators.get_mut(actuator)?.kind)?.replace(limit);
+        let text = format!("actuator[{actuator}].{key}={limit:?}");
         self.source.overrides.push(text.clone());
         Some(text)
     }

@@ -401,13 +401,12 @@ fn without_idle(problem: &Problem<'_>, mut now: Fitted, (many, all): (usize, f64
     let least = usize::from(!now.set.members.iter().any(|(h, _)| h.is_tolerated()));
     while now.set.findings().count() > least {
         let mut better = None;
-        let most = may_rise(&now)?;
         for m in (0..now.set.members.len()).rev().filter(|m| !now.set.members[*m].0.is_tolerated()) {
             let Ok(glance) = problem.fit(&now, now.set.without(m), GLANCE) else { continue };
             // What is worse by far after two steps does not come back.
             let leaves_own = |fit: &Fitted| {
                 let is_own = problem.power(fit) < OWN * all && is_as_quiet(&fit.spread, &now.spread);
-                is_own && remainder(problem, fit).is_ok_and(|left| left.rise <= most)
+                is_own && matches!((remainder(problem, fit), may_rise(&now)), (Ok(left), Ok(most)) if left.rise <= most)
             };
             if criterion(&glance, many) - criterion(&now, many) > FAR && !leaves_own(&glance) {
                 continue;
