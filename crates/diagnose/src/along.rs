@@ -11,7 +11,7 @@ use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach};
 use crate::linear::{Segment, Stage, Steps};
 use crate::pace::{self, Discretisation};
-use crate::plant::{Built, Plant};
+use crate::plant::Plant;
 use crate::replay::Span;
 use crate::select::search::{Found, NEXT_TO_NOTHING, Remainder, Tried, hypotheses_of, remainder, search, to_the_end};
 use crate::tell::near_the_best;
@@ -34,11 +34,6 @@ pub(crate) const USUAL: Tolerance = Tolerance { mass: 0.01, com_m: 2e-3, inertia
 const LAST: Reach = Reach { iterations: 4, reuse: false };
 /// Iterations with the nominal numbers free within their tolerances.
 const WITHIN: Reach = Reach { iterations: 6, reuse: true };
-
-/// Whether a model may be followed from interval to interval: contacts and mechanisms remember what a state does not hold.
-pub(crate) fn may_follow(built: &Built) -> bool {
-    built.model.scene.pairs().is_empty() && built.model.mechanisms.is_empty()
-}
 
 /// Searches along the runs that may be fitted.
 pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Course, DiagnoseError> {

@@ -41,7 +41,7 @@ pub(crate) fn delivered(
     work: &Work<'_>,
 ) -> Result<Option<Raised>, DiagnoseError> {
     let pace = Pace::even(plant.scenario.integrator.step_s);
-    let stage = Stage { tapes, pace, work, doubt: noise::STATED };
+    let stage = Stage { tapes, pace, work, doubt: noise::STATED, hears: None };
     raised_where((plant, built, effects), tapes, |asked, raised| {
         let windows = cut(built, tapes, Some(window), |t| t.role == Role::Fit);
         asked.is_delivered(&stage, [built, raised], &windows)

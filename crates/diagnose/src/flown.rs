@@ -12,7 +12,7 @@ use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, Fit};
 use crate::identify::fit::{Fitted, Problem};
-use crate::identify::track::{Interval, Track};
+use crate::identify::track::{Interval, Track, may_follow};
 use crate::linear::Stage;
 use crate::pace;
 use crate::plant::{Built, Plant};
@@ -72,7 +72,7 @@ fn found_in(
 ) -> Result<Option<Flown>, DiagnoseError> {
     let Some(free) = without_touches(plant) else { return Ok(None) };
     let Ok(built) = free.build(&[]) else { return Ok(None) };
-    if !along::may_follow(&built) {
+    if !may_follow(&built) {
         return Ok(None);
     }
     let Some((tapes, pace)) = flown(stage, (&free, &built), (flights, own, window))? else { return Ok(None) };

@@ -70,7 +70,10 @@ pub fn judge(
         let built = plant.build(&set.effects())?;
         let runs = if is_last { found } else { runs };
         let model = Candidate { stage, plant, set, built, is_last, known, runs };
-        let starts = if follows { model.starts_along_runs(window)? } else { model.starts_in_windows(window)? };
+        let starts = match follows && is_last {
+            true => model.starts_along_runs(window)?,
+            false => model.starts_in_windows(window)?,
+        };
         Ok(starts.map(predict))
     };
     let [windows_before, runs_before] = of(nominal)?;
@@ -149,7 +152,12 @@ impl Candidate<'_> {
         if !self.is_last {
             begin_from(&self.stage, &mut runs, &self.runs.segments);
         }
-        let whole = self.follow(&runs)?;
+        // What is far off already in windows goes astray from wherever its runs begin.
+        let is_far = !self.is_last && windowed.rms() > PLAUSIBLE;
+        let whole = match is_far {
+            true => self.fit(runs, Effort { iterations: 0, ..self.effort() })?,
+            false => self.follow(&runs)?,
+        };
         self.say("whole runs", &whole);
         Ok([windowed, whole])
     }

@@ -9,6 +9,7 @@
 //! H_ss is damped, so that a start that nothing shows stays put, and a bristle that slides already does not run off). Sums of K over segments hold everything that a step of a fit and a score
 //! test need.
 
+use crate::identify::track::may_follow;
 use crate::pace::touches;
 use crate::plant::Built;
 use crate::replay::{Pace, Span, readings, residuals_of};
@@ -116,6 +117,11 @@ const ALIKE: f64 = 0.3;
 /// Share of that which is always borne.
 const SMOOTH: f64 = 0.1;
 
+/// Cells over whose means commands are heard for derivatives, s, the finest first.
+pub(crate) fn cells(step: f64) -> [f64; 2] {
+    [COARSER * step, COARSER * COARSER * step]
+}
+
 /// Everything that replays need beside the segment itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a> {
@@ -127,6 +133,8 @@ pub struct Stage<'a> {
     pub work: &'a Work<'a>,
     /// Cost per scalar that is not told from a wrong noise level.
     pub doubt: f64,
+    /// Cells over whose means commands are heard where nothing touches, s; none: as they were recorded.
+    pub hears: Option<f64>,
 }
 
 impl Stage<'_> {
@@ -136,7 +144,7 @@ impl Stage<'_> {
         let step = COARSER * step;
         // Long steps in flight are as long as they may be already.
         let free = if free > self.pace.step { free.max(step) } else { step };
-        Self { pace: Pace { step, free, ..self.pace }, ..*self }
+        Self { pace: Pace { step, free, ..self.pace }, hears: Some(step), ..*self }
     }
 
     /// Where derivatives are taken, and the residuals there; `r` are those of a prediction.
@@ -189,7 +197,9 @@ impl Stage<'_> {
     }
 
     fn readings_from(&self, built: &Built, segment: &Segment, start: &Start) -> Option<Vec<Measured>> {
-        let found = readings(built, &self.tapes[segment.run], start, segment.span, self.pace);
+        let tape = &self.tapes[segment.run];
+        let heard = self.hears.filter(|_| may_follow(built)).map_or(tape, |longest| tape.heard_at(longest));
+        let found = readings(built, (tape, heard), start, segment.span, self.pace);
         let work = found.as_ref().map_or_else(|_| sim::Work::default(), |r| r.work);
         self.work.add(segment.span.to - segment.span.from, built.model.owners.len(), &work);
         found.ok().map(|r| r.values)

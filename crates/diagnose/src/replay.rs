@@ -84,12 +84,18 @@ pub fn observe(
     shown.map(|_| ())
 }
 
-/// Replays a span for what its sensors would read.
-pub fn readings(built: &Built, tape: &Tape, start: &Start, span: Span, pace: Pace) -> Result<Readings, DiagnoseError> {
+/// Replays a span for what its sensors would read; `heard`: commands as they are heard, the tape itself or means of its commands.
+pub fn readings(
+    built: &Built,
+    (tape, heard): (&Tape, &Tape),
+    start: &Start,
+    span: Span,
+    pace: Pace,
+) -> Result<Readings, DiagnoseError> {
     let mut values = vec![Measured::Scalar(f64::NAN); tape.range(span).len()];
     let sensors = sensors_of(built, tape)?;
     let events = events_in(tape, span, &sensors);
-    let replay = Replay::new(built, tape, start, span.from, pace);
+    let replay = Replay::new(built, heard, start, span.from, pace);
     let replay = measure(replay, &sensors, &events, |i, _, truth| values[i] = *truth)?;
     Ok(Readings { values, work: replay.world.state().work })
 }

@@ -19,9 +19,10 @@ use crate::excerpts;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, Effort, Fit, UNDAMPED, fit};
 use crate::identify::fit::Fitted;
+use crate::identify::track::may_follow;
 use crate::judge::{Judgement, judge};
 use crate::limits;
-use crate::linear::{Segment, Stage, Steps};
+use crate::linear::{self, Segment, Stage, Steps};
 use crate::locate::{Located, locate, locate_in, places};
 use crate::lost;
 use crate::noise::{self, Noise};
@@ -30,7 +31,7 @@ use crate::plant::{Built, Plant};
 use crate::replay::Pace;
 use crate::share;
 use crate::sought::{Sought, seek};
-use crate::standing::{Standing, fit_in_turns, follow};
+use crate::standing::{Standing, fit_in_turns, follow_with};
 use crate::stretches::{cut, joined};
 use crate::tape::{Tape, load};
 use crate::tell;
@@ -182,7 +183,7 @@ fn diagnose_in(
     let Prepared { plant, inspection, begun, mut clock } = prepare(scenario, set, work, parts)?;
     let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } = begun;
     let pace = discretisation.pace;
-    let mut stage = Stage { tapes: &thinned, pace, work, doubt };
+    let mut stage = Stage { tapes: &thinned, pace, work, doubt, hears: None };
     let Sought { nominal, whole, located, standing, attempts, mut rivals } =
         seek(&mut stage, &plant, (nominal, &tapes, window), &mut clock)?;
     clock.stage("fit to all samples", 0.75);
@@ -234,12 +235,12 @@ fn diagnose_whole(
     set: &RecordingSet,
     work: &Work<'_>,
 ) -> Result<Option<(Diagnosis, Evidence)>, DiagnoseError> {
-    if !along::may_follow(&Plant::new(scenario.clone()).build(&[])?) {
+    if !may_follow(&Plant::new(scenario.clone()).build(&[])?) {
         return Ok(None);
     }
     let Prepared { plant, inspection, begun, mut clock } = prepare(scenario, set, work, WINDOWS[0])?;
     let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } = begun;
-    let few = &Stage { tapes: &thinned, pace: discretisation.pace, work, doubt };
+    let few = &Stage { tapes: &thinned, pace: discretisation.pace, work, doubt, hears: None };
     let plant = &plant;
     clock.stage("locate the missing force", 0.15);
     let own = Facts::new(&nominal.built, few.tapes);
@@ -321,10 +322,12 @@ fn predict_along(
     let known = Fit { set: EffectSet::default(), built: plant.build(&[])?, ..known };
     let runs: Vec<Segment> =
         joined(&corrected.segments, few.tapes).into_iter().filter(|s| few.tapes[s.run].role == Role::Fit).collect();
-    let whole = follow(few, plant, best.set.frozen(), &runs)?;
+    let whole = follow_with(few, plant, best.set.frozen(), &runs, Effort::JUDGED)?;
     let follows = whole.rms() < lost::NEAR;
     let windows = along::windows_of(&along::problem(few, plant, own, Role::Fit), best, window);
-    let corrected = Fit { set: best.set.clone(), built: best.built.clone(), ..corrected };
+    // Runs that are followed begin where they were found to.
+    let segments = whole.segments.iter().chain(&corrected.segments).cloned().collect();
+    let corrected = Fit { set: best.set.clone(), built: best.built.clone(), segments, ..corrected };
     let judgement = judge((few, all), plant, ([&known, &known], &corrected), (window, follows))?;
     // A run that is followed in windows and not as a whole says how far ahead the model tells, not how good it is.
     let error = |run: usize, windowed: bool| judgement.rms(windowed, |r| r == run)[1];
@@ -399,7 +402,7 @@ fn begin(
     let thin = |tapes: &[Tape]| tapes.iter().map(|t| t.thinned(ENOUGH)).collect::<Vec<Tape>>();
     let thinned = thin(&tapes);
     let pace = Pace::even(own);
-    let stage = Stage { tapes: &thinned, pace, work: clock.work, doubt: noise::STATED };
+    let stage = Stage { tapes: &thinned, pace, work: clock.work, doubt: noise::STATED, hears: None };
     clock.stage("choose the step", 0.03);
     let segments = cut(built, &thinned, Some(window), |t| t.role == Role::Fit);
     let guessed = chosen(&stage, built, &segments, own);
@@ -417,7 +420,8 @@ fn begin(
     }
     let noise = Noise::estimate(&Stage { tapes: &tapes, ..stage }, &nominal, set);
     said.extend(noise.words());
-    let tapes = noise.applied(&tapes);
+    let cells = linear::cells(discretisation.pace.step);
+    let tapes: Vec<Tape> = noise.applied(&tapes).into_iter().map(|t| t.with_hearings(&cells)).collect();
     let thinned = thin(&tapes);
     if !noise.factors.is_empty() {
         // Guesses and weights were those of another noise.

@@ -147,8 +147,10 @@ impl Stage<'_> {
                 return segment.clone();
             }
             let from = |start: &Start| self.fit_growing(built, segment, start, effort);
-            let (guessed, known) = (from(&segment.guess), from(&segment.start));
-            let other = if guessed.cost < known.cost { guessed } else { known };
+            let known = from(&segment.start);
+            let is_poor = known.cost >= poor * segment.weight * self.count(segment) as f64;
+            let guessed = is_poor.then(|| from(&segment.guess)).filter(|guessed| guessed.cost < known.cost);
+            let other = guessed.unwrap_or(known);
             if other.cost < now { other.segment } else { segment.clone() }
         };
         segments.par_iter().map(of).collect()
@@ -160,14 +162,16 @@ impl Stage<'_> {
         let Span { from, to } = segment.span;
         let mut now = Segment { start: start.fitted_to(built), columns: None, ..segment.clone() };
         let freedoms = freedoms(built, &now.start).len();
+        let mut steps = Steps::default();
         for share in GROWTH {
             now.span.to = from + share * (to - from);
             if self.count(&now) > ENOUGH * freedoms {
-                now.start = self.fit_start(built, &now, &Steps::default(), effort).segment.start;
+                let found = self.fit_start(built, &now, &steps, effort).segment;
+                (now.start, steps) = (found.start, found.steps);
             }
         }
         now.span.to = to;
-        self.fit_start(built, &now, &Steps::default(), effort)
+        self.fit_start(built, &now, &steps, effort)
     }
 
     /// The first step that lowers the cost: the full one, then more and more damped ones.

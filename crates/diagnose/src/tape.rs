@@ -1,16 +1,18 @@
 //! A recorded run, made ready for replay: commands, readings, and the order in which they come.
 
 use crate::error::DiagnoseError;
+use crate::identify::coarse::heard_in_cells;
 use crate::limits;
 use crate::noise;
 use crate::plant::{Built, Plant};
 use crate::reading::{Reading, Value};
-use crate::replay::Span;
+use crate::replay::{SAME, Span};
 use record::{RecordedRun, RecordingSet, Role, Series};
 use scenario::measure::{MeasureError, Quantity};
 use sim::Model;
 use spatial::{Rot, Vec3, nalgebra};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// What of an actuator is commanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,6 +78,17 @@ pub struct Tape {
     pub ticks: Vec<f64>,
     /// First and last sample, s.
     pub span: (f64, f64),
+    /// The same commands at coarser clocks, the finest first.
+    pub(crate) coarser: Vec<Hearing>,
+}
+
+/// A run's commands as their means over cells: derivatives need not hear every tick.
+#[derive(Clone, Debug)]
+pub(crate) struct Hearing {
+    /// Longest cell, s.
+    longest: f64,
+    /// Commands without readings.
+    tape: Arc<Tape>,
 }
 
 impl Tape {
@@ -127,9 +140,8 @@ impl Tape {
             }
         };
         let readings = self.readings.iter().map(thin).collect();
-        let thinned = Self::assemble((&self.file, self.role), self.commands.clone(), readings);
         // A run ends where it ends, however thinly it is sampled.
-        Self { index: self.index, span: self.span, ..thinned }
+        Self { span: self.span, ..self.with_readings(readings) }
     }
 
     /// A part of the run, with the channels that are wanted.
@@ -156,7 +168,21 @@ impl Tape {
 
     /// The same run with other samples.
     pub(crate) fn with_readings(&self, readings: Vec<Reading>) -> Self {
-        Self { index: self.index, ..Self::assemble((&self.file, self.role), self.commands.clone(), readings) }
+        let read = Self::assemble((&self.file, self.role), self.commands.clone(), readings);
+        Self { index: self.index, coarser: self.coarser.clone(), ..read }
+    }
+
+    /// The same run with its commands also in cells of some lengths.
+    pub(crate) fn with_hearings(mut self, lengths: &[f64]) -> Self {
+        let hearing = |longest: &f64| Hearing { longest: *longest, tape: heard_in_cells(&self, *longest) };
+        self.coarser = lengths.iter().map(hearing).collect();
+        self
+    }
+
+    /// The run's commands in the longest cells up to a length; as they were recorded where there are none.
+    pub(crate) fn heard_at(&self, longest: f64) -> &Self {
+        let fits = self.coarser.iter().rev().find(|h| h.longest <= longest + SAME);
+        fits.map_or(self, |h| &h.tape)
     }
 
     pub(crate) fn assemble((file, role): (&str, Role), commands: Vec<CommandTape>, readings: Vec<Reading>) -> Self {
@@ -174,7 +200,8 @@ impl Tape {
         for event in &events {
             offsets.push(offsets[offsets.len() - 1] + readings[event.reading as usize].width());
         }
-        Self { index: 0, file: file.to_owned(), role, commands, readings, events, offsets, ticks, span }
+        let file = file.to_owned();
+        Self { index: 0, file, role, commands, readings, events, offsets, ticks, span, coarser: Vec::new() }
     }
 
     /// The events of a span: those at its end belong to the next, but for the run's last.

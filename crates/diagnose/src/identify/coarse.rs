@@ -3,10 +3,10 @@
 //! Sensors and commands of a rig tick far more often than its motion bends: a derivative of what an interval reads is as smooth as that motion. It is taken
 //! at every k-th instant at which anything is read, k a power of two, commands replaced by their means between these, and told for the others
 //! by cubics through the nearest four (Lagrange). What is linear in commands feels their mean; what switches keeps its instants.
-//! How large k may be is tried on the rig itself.
+//! How large k may be is tried on the rig itself. Dry friction has corners, of which both ends of a difference quotient make the same.
 
 use super::forces::Force;
-use super::track::{Frame, Track, coordinates};
+use super::track::{Frame, Track, coordinates, may_follow};
 use crate::linear::Stage;
 use crate::plant::Plant;
 use crate::replay::SAME;
@@ -49,7 +49,7 @@ pub struct Few {
     told: Vec<(u16, [u16; 4], [f32; 4])>,
 }
 
-/// All runs at the coarsest clock at which a rig's derivatives are what they are; as they were recorded where a model has corners.
+/// All runs at the coarsest clock at which a rig's derivatives are what they are; as they were recorded where parts touch.
 pub fn of_rig(
     stage: &Stage<'_>,
     (plant, forces): (&Plant, &[Force]),
@@ -59,7 +59,7 @@ pub fn of_rig(
     let at = |longest| -> Vec<Coarse> { stage.tapes.iter().map(|t| Coarse::new(t, own, longest)).collect() };
     let fine = at(None);
     let tried = || {
-        let built = plant.build(&[]).ok().filter(|built| built.model.is_smooth())?;
+        let built = plant.build(&[]).ok().filter(may_follow)?;
         let cut = |(k, run): (usize, &usize)| {
             let track = Track::cut((stage, &fine), (&built, forces.len()), *run, knots).ok()?;
             Some((*run, track.intervals[(k + 1) * knots / (TRIED + 1)].clone()))
@@ -84,10 +84,7 @@ impl Coarse {
         let Some(longest) = longest else {
             return Self { heard: Arc::new(silent(tape, tape.commands.clone())), longest: own, instants, most: 0 };
         };
-        let mut gaps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
-        gaps.sort_by(f64::total_cmp);
-        let usual = gaps.get(gaps.len() / 2).copied().unwrap_or(longest);
-        let most = (longest / usual + SAME).max(1.0).log2().floor() as u32;
+        let most = clock_of(&instants, longest);
         let heard = Arc::new(heard(tape, &cells(&instants, 1 << most, longest)));
         Self { heard, longest, instants, most }
     }
@@ -168,6 +165,19 @@ impl Few {
         }
         out
     }
+}
+
+/// A run's commands in cells of a length at most, each its mean.
+pub(crate) fn heard_in_cells(tape: &Tape, longest: f64) -> Arc<Tape> {
+    Coarse::new(tape, longest, Some(longest)).heard
+}
+
+/// The largest power of two of instants that pass in a while.
+fn clock_of(instants: &[f64], longest: f64) -> u32 {
+    let mut gaps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
+    gaps.sort_by(f64::total_cmp);
+    let usual = gaps.get(gaps.len() / 2).copied().unwrap_or(longest);
+    (longest / usual + SAME).max(1.0).log2().floor() as u32
 }
 
 /// Begins of cells between every k-th instant, none longer than that.

@@ -9,7 +9,7 @@ use super::forces::{Force, first_spread, forces};
 use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor, score};
 use super::shown::shown;
 use super::step::{next_sizes, within_bounds};
-use super::track::{Bases, Column, Frame, Interval, Link, Side, Source, Told, Track, coordinates};
+use super::track::{Base, Bases, Column, Frame, Interval, Link, Side, Source, Told, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
@@ -71,6 +71,9 @@ pub struct Fitted {
     /// Whether the last step promised next to nothing.
     pub converged: bool,
 }
+
+/// What the intervals of all runs read and where they end, run by run.
+type Exact = Vec<Vec<Base>>;
 
 /// Columns of a run, number by number and interval by interval.
 pub type Columns = Vec<Vec<Column>>;
@@ -330,7 +333,7 @@ impl<'a> Problem<'a> {
         let mut halved = 0i32;
         for iteration in 0..reach.iterations {
             let steps = if iteration == 0 { STEPS[0] } else { STEPS[1] };
-            let here = self.here(&mut now, (&slots, &sizes), (reach.reuse || iteration > 0, steps));
+            let here = self.here(&mut now, reach.reuse || iteration > 0, steps);
             let is_worse = |b: &Fitted| here.as_ref().map_or(true, |h| h.2.is_nan() || h.2 > b.score + CONVERGED);
             if let Some(last) = before.as_ref().filter(|b| is_worse(b)) {
                 if halved >= HALVINGS {
@@ -340,7 +343,9 @@ impl<'a> Problem<'a> {
                 now = self.between(last, &now, NEARER.powi(halved))?;
                 continue;
             }
-            let (made, here, score) = here?;
+            let (bare, here, score) = here?;
+            let variations = vary(self.plant, &now.set, &slots, &sizes)?;
+            let made = self.with_columns(&mut now, bare, &variations)?;
             let ridge = ridge_of(&now.set, slots.len());
             let chains = made.chains(&(0..slots.len()).collect::<Vec<_>>());
             let found = estimate(&chains, Some(&ridge), &here.spread, STEPS[1]);
@@ -366,19 +371,14 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// A set made linear where it stands, with the spread that is likeliest there, and its score.
-    fn here(
-        &self,
-        now: &mut Fitted,
-        (slots, sizes): (&[(usize, usize)], &[f64]),
-        (reuse, steps): (bool, usize),
-    ) -> Result<(Made, Estimate, f64), DiagnoseError> {
-        let variations = vary(self.plant, &now.set, slots, sizes)?;
-        let made = self.linearise(now, &variations, reuse)?;
+    /// A set where it stands, with the spread that is likeliest there, and its score: columns are taken where that was no step too far.
+    fn here(&self, now: &mut Fitted, reuse: bool, steps: usize) -> Result<(Exact, Estimate, f64), DiagnoseError> {
+        let bare = self.exact(now, reuse)?;
+        let made = self.with_columns(now, bare.clone(), &[])?;
         // Which intervals are not followed is another question each time.
         let here = estimate(&made.chains(&[]), None, &now.spread.without_local_noise(), steps);
         let score = here.score + now.set.prior_cost() - now.datum;
-        Ok((made, here, score))
+        Ok((bare, here, score))
     }
 
     /// A set, or the largest share of the way to it from another one, or from what changes nothing, that is a model: a linear step knows nothing of what a
@@ -485,16 +485,29 @@ impl<'a> Problem<'a> {
 
     /// Everything linear about the states of a fit, with a column for each variation.
     pub fn linearise(&self, now: &mut Fitted, variations: &[Variation], reuse: bool) -> Result<Made, DiagnoseError> {
+        let exact = self.exact(now, reuse)?;
+        self.with_columns(now, exact, variations)
+    }
+
+    /// What a fit reads where it stands, its derivatives by states and forces taken anew where these are not to be reused.
+    fn exact(&self, now: &mut Fitted, reuse: bool) -> Result<Exact, DiagnoseError> {
         let frame = self.frame(now);
-        let bases: Option<Vec<Bases>> = now.tracks.par_iter().map(|t| frame.bases(t, variations)).collect();
+        let exact: Option<Exact> = now.tracks.par_iter().map(|t| frame.exact(t)).collect();
+        let exact = exact.ok_or_else(|| self.lost())?;
+        if !reuse || now.links.len() != now.tracks.len() {
+            let links: Option<Vec<Vec<Link>>> = now.tracks.par_iter().map(|t| frame.links(t)).collect();
+            now.links = links.ok_or_else(|| self.lost())?.into_iter().map(Arc::new).collect();
+        }
+        Ok(exact)
+    }
+
+    /// The same with a column for each variation.
+    fn with_columns(&self, now: &mut Fitted, exact: Exact, variations: &[Variation]) -> Result<Made, DiagnoseError> {
+        let frame = self.frame(now);
+        let of_run = |(track, exact): (&Track, Vec<Base>)| frame.bases(track, exact, variations);
+        let bases: Option<Vec<Bases>> = now.tracks.par_iter().zip(exact).map(of_run).collect();
         let bases = bases.ok_or_else(|| self.lost())?;
-        let links = match reuse && now.links.len() == now.tracks.len() {
-            true => now.links.clone(),
-            false => {
-                let links: Option<Vec<Vec<Link>>> = now.tracks.par_iter().map(|t| frame.links(t)).collect();
-                links.ok_or_else(|| self.lost())?.into_iter().map(Arc::new).collect()
-            }
-        };
+        let links = now.links.clone();
         let steady = self.steady(now, &bases, variations);
         let channels = self.channels_of(&now.tracks);
         let count = channels.iter().flatten().map(Vec::len).sum();
@@ -510,7 +523,7 @@ impl<'a> Problem<'a> {
             Linear { run: k, price, links: Arc::clone(&links[k]), sides, channels, start: now.first.clone() }
         };
         let runs: Vec<Linear> = channels.into_par_iter().enumerate().map(linear).collect();
-        (now.links, now.steady) = (links, steady);
+        now.steady = steady;
         Ok(Made { runs, count })
     }
 

@@ -37,8 +37,8 @@ pub type Base = (DVector<f64>, Start);
 pub struct Bases {
     /// For residuals.
     pub exact: Vec<Base>,
-    /// For difference quotients of models without corners, at few events.
-    smooth: Vec<Base>,
+    /// For difference quotients at the coarser clock, at few events.
+    coarse: Vec<Base>,
 }
 
 /// Derivatives of an interval by its state and by forces.
@@ -90,6 +90,11 @@ pub struct Frame<'a> {
 /// Coordinates of a state that intervals hand on to each other.
 pub fn coordinates(built: &Built, start: &Start) -> Vec<Freedom> {
     freedoms(built, start).into_iter().filter(|f| !matches!(f, Freedom::Bristle(..))).collect()
+}
+
+/// Whether a model may be followed from interval to interval: contacts and mechanisms remember what a state does not hold.
+pub fn may_follow(built: &Built) -> bool {
+    built.model.scene.pairs().is_empty() && built.model.mechanisms.is_empty()
 }
 
 impl Interval {
@@ -158,9 +163,9 @@ impl Frame<'_> {
         self.shoot_at(self.stage.pace, built, (run, interval), start, told)
     }
 
-    /// The same as derivatives are taken: models without corners by the midpoint rule, at few events.
+    /// The same as derivatives are taken: models in which nothing touches at a coarser clock and few events, those without corners by the midpoint rule.
     fn glance(&self, built: &Built, run: usize, interval: &Interval, start: &Start) -> Option<Base> {
-        if !built.model.is_smooth() {
+        if !may_follow(built) {
             return self.shoot(built, run, interval, start);
         }
         let Coarse { heard, longest, .. } = &self.coarse[run];
@@ -193,10 +198,7 @@ impl Frame<'_> {
         let column = |moved: Option<Base>, step: f64| {
             let few = moved.as_ref().map_or_else(|| DVector::zeros(r.len()), |(q, _)| (q - r) / step);
             let by_end = |(_, e): &Base| DVector::from_vec(e.difference(end, self.freedoms)) / step;
-            (
-                told(self.built.model.is_smooth(), interval, few),
-                moved.as_ref().map_or_else(|| DVector::zeros(n_x), by_end),
-            )
+            (told(may_follow(self.built), interval, few), moved.as_ref().map_or_else(|| DVector::zeros(n_x), by_end))
         };
         let by_state = |freedom: &Freedom| {
             let step = freedom.first_step();
@@ -255,9 +257,10 @@ impl Frame<'_> {
         columns.filter(|c| !c.is_empty()).map(|c| DMatrix::from_columns(&c))
     }
 
-    /// Whether both ends of a difference quotient are models without corners: else both are replayed as they are judged.
-    fn is_smooth_with(&self, variation: &Variation) -> bool {
-        self.built.model.is_smooth() && variation.built.model.is_smooth()
+    /// Whether both ends of a difference quotient are replayed alike at the coarser clock: else both are as they are judged.
+    fn is_coarse_with(&self, variation: &Variation) -> bool {
+        let [here, there] = [self.built, &variation.built].map(|b| may_follow(b).then(|| b.model.is_smooth()));
+        here.is_some() && here == there
     }
 
     /// Columns of a number along a run: ∂r/∂θ and ∂end/∂θ of each interval.
@@ -271,20 +274,20 @@ impl Frame<'_> {
     fn put_columns(&self, track: &Track, bases: &Bases, variation: &Variation, mut put: impl FnMut(Column)) {
         let brings = has_memory(&variation.built, self.built);
         let mut carried: Option<Start> = None;
-        let is_smooth = self.is_smooth_with(variation);
-        let bases = if is_smooth { &bases.smooth } else { &bases.exact };
+        let is_coarse = self.is_coarse_with(variation);
+        let bases = if is_coarse { &bases.coarse } else { &bases.exact };
         for (interval, (r, end)) in track.intervals.iter().zip(bases) {
             let mut start = interval.start.fitted_to(&variation.built);
             if let Some(before) = carried.as_ref().filter(|_| brings) {
                 start.remember(before, self.built);
             }
-            let replay = if is_smooth { Self::glance } else { Self::shoot };
+            let replay = if is_coarse { Self::glance } else { Self::shoot };
             let Some((q, e)) = replay(self, &variation.built, track.run, interval, &start) else {
-                put((told(is_smooth, interval, DVector::zeros(r.len())), DVector::zeros(self.freedoms.len())));
+                put((told(is_coarse, interval, DVector::zeros(r.len())), DVector::zeros(self.freedoms.len())));
                 continue;
             };
             let by = DVector::from_vec(e.difference(end, self.freedoms)) / variation.step;
-            put((told(is_smooth, interval, (q - r) / variation.step), by));
+            put((told(is_coarse, interval, (q - r) / variation.step), by));
             carried = Some(e);
         }
     }
@@ -311,16 +314,15 @@ impl Frame<'_> {
         track.intervals.par_iter().map(|i| self.shoot(self.built, track.run, i, &i.start)).collect()
     }
 
-    /// The same as derivatives by some variations are taken too, and where each ends; none where a replay left the range of numbers.
-    pub fn bases(&self, track: &Track, variations: &[Variation]) -> Option<Bases> {
-        let exact = self.exact(track)?;
+    /// The same beside what derivatives by some variations are taken from; none where a replay left the range of numbers.
+    pub fn bases(&self, track: &Track, exact: Vec<Base>, variations: &[Variation]) -> Option<Bases> {
         let glance = |i: &Interval| self.glance(self.built, track.run, i, &i.start);
-        let smooth = if variations.iter().any(|v| self.is_smooth_with(v)) {
+        let coarse = if variations.iter().any(|v| self.is_coarse_with(v)) {
             track.intervals.par_iter().map(glance).collect()
         } else {
             Some(Vec::new())
         };
-        Some(Bases { exact, smooth: smooth? })
+        Some(Bases { exact, coarse: coarse? })
     }
 
     /// Follows a run from its first state by what its samples say (extended Kalman filter, each interval about its own estimate), and leaves the states there; the derivatives
