@@ -1,5 +1,5 @@
 //! What a recording says of a scenario's limits before anything is fitted: joints that were pushed on beyond the speed at which their
-//! drives stop pushing, and efforts that were measured rather than commanded.
+//! drives stop pushing, joints that went on beyond their stops, and efforts that were measured rather than commanded.
 //!
 //! The velocity limit of a URDF is often a planner's. Where a recorded joint is faster while its command pushes it on, the rig has no
 //! such limit: it is raised, and that is said; a model that stops pushing there would be off by more than any effect.
@@ -8,6 +8,7 @@ use crate::number::short;
 use crate::plant::{Built, Plant};
 use crate::reading::{Reading, Value};
 use crate::tape::{CommandTape, Commanded, Tape};
+use multibody::JointKind;
 use record::{RecordingSet, Series};
 use scenario::Scenario;
 use scenario::measure::Quantity;
@@ -45,6 +46,50 @@ pub(crate) fn raised(plant: &Plant, built: &Built, tapes: &[Tape]) -> Option<(Sc
         )
     };
     (!passed.is_empty()).then(|| (scenario, words()))
+}
+
+/// The scenario without the stops that its recording passes, and which these are, in words; none where it passes none.
+pub(crate) fn unstopped(plant: &Plant, built: &Built, tapes: &[Tape]) -> Option<(Scenario, String)> {
+    let mut scenario = plant.scenario.clone();
+    let mut passed = Vec::new();
+    for (v, vehicle) in built.model.vehicles.iter().enumerate() {
+        for joint in vehicle.tree.joints.iter().filter(|j| !j.is_mimic) {
+            let Some([lower, upper]) = joint.position_limits else { continue };
+            let yields = if joint.kind == JointKind::Prismatic { YIELDS[1] } else { YIELDS[0] };
+            let Some(far) = place_beyond(tapes, vehicle.v0 + joint.v_index, [lower - yields, upper + yields]) else {
+                continue;
+            };
+            let range = format!("{} … {}", short(lower), short(upper));
+            let now = scenario.lift_stops(v, &joint.name);
+            passed.extend(now.map(|now| format!("{} ({} beyond {range}; {now})", joint.name, short(far))));
+        }
+    }
+    let words = || {
+        format!(
+            "Joints went on beyond the ends of their ranges in the URDF, so that the rig has no such stops; they are taken away: {}.",
+            passed.join(", ")
+        )
+    };
+    (!passed.is_empty()).then(|| (scenario, words()))
+}
+
+/// What a stop yields at most, rad and m: twice what the scenario's own do at a drive's full effort.
+const YIELDS: [f64; 2] = [2e-2, 2e-3];
+
+/// The place farthest outside a range at which a joint was read that outliers do not explain.
+fn place_beyond(tapes: &[Tape], coordinate: usize, [lower, upper]: [f64; 2]) -> Option<f64> {
+    let is_place = |r: &&Reading| matches!(r.quantity, Quantity::JointPosition(v) | Quantity::JointLinkPosition(v) if v == coordinate);
+    let readings: Vec<&Reading> = tapes.iter().flat_map(|t| &t.readings).filter(is_place).collect();
+    let value = |v: &Value| match v {
+        Value::Vector(v) => v.x,
+        Value::Rotation(_) => f64::NAN,
+    };
+    let outside = |r: &Reading, q: f64| (lower - q).max(q - upper) - DEVIATIONS * r.sigma;
+    let places = readings.iter().flat_map(|r| r.values.iter().map(|q| (outside(r, value(q)), value(q))));
+    let mut beyond: Vec<(f64, f64)> = places.filter(|p| p.0 > 0.0).collect();
+    beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let count: usize = readings.iter().map(|r| r.values.len()).sum();
+    beyond.get(SAMPLES.max((SHARE * count as f64) as usize)).map(|p| p.1)
 }
 
 /// The largest speed at which a joint was pushed on that outliers do not explain, where it is beyond the limit.

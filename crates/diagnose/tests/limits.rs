@@ -4,11 +4,13 @@
 mod planted;
 
 use diagnose::diagnosis::Verdict;
+use diagnose::run::diagnose_with;
 use diagnose::synthetic::as_recorded;
 use diagnose::{Diagnosis, synthesise};
 use planted::{effect, number, root, swings};
 use record::{RecordingSet, Series};
 use scenario::Scenario;
+use std::path::Path;
 
 const FRICTION: &str = "joint-viscous-friction";
 
@@ -47,6 +49,36 @@ fn a_speed_limit_that_the_rig_passes_is_raised_said_and_written() {
     assert!(!own.remarks.iter().any(|r| r.contains("speed_limit")), "{:?}", own.remarks);
     let [raised, free] = [&diagnosis, &own].map(|d| d.effects[0].params["b"].numbers().unwrap()[0]);
     assert!((raised - free).abs() < 1e-6, "{raised} {free}");
+}
+
+/// The rig with a hinge that its URDF lets swing by so much to either side.
+fn narrow(folder: &Path, range: f64) -> Scenario {
+    let rigs = root().join("crates/diagnose/tests/rigs");
+    let urdf = std::fs::read_to_string(rigs.join("swing.urdf")).unwrap();
+    let narrow = urdf.replace(r#"lower="-100" upper="100""#, &format!(r#"lower="-{range}" upper="{range}""#));
+    assert_ne!(narrow, urdf);
+    std::fs::write(folder.join("swing.urdf"), narrow).unwrap();
+    std::fs::copy(rigs.join("swing.toml"), folder.join("swing.toml")).unwrap();
+    scenario::load(&folder.join("swing.toml"), &[]).unwrap()
+}
+
+#[test]
+fn stops_that_a_recorded_joint_passes_are_taken_away_and_those_that_hold_it_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let is_lifted = |d: &Diagnosis| d.remarks.iter().any(|r| r.contains("vehicle[0].unstopped_joints="));
+    let free = diagnosed(narrow(folder.path(), 0.2), &recording());
+    assert_eq!((free.verdict, found(&free)), (Verdict::Explained, vec![FRICTION]));
+    assert!(is_lifted(&free), "{:?}", free.remarks);
+    let place = |s: &&Series| s.channel.ends_with(".position");
+    let set = recording();
+    let places = set.runs.iter().flat_map(|r| r.series.iter().filter(place)).flat_map(|s| s.values.iter().copied());
+    let range = 0.95 * places.fold(0.0, |far: f64, q| far.max(q.abs()));
+    let mut rig = narrow(folder.path(), range);
+    rig.effects.push(effect(FRICTION, "joint:hinge", &[("b", number(0.3))]));
+    let held = synthesise(rig, &swings(), &as_recorded, 3).unwrap();
+    // What is passed is seen before anything is sought.
+    let held = diagnose_with(narrow(folder.path(), range), &held, (1e-3, &())).unwrap().0;
+    assert!(!is_lifted(&held), "{:?}", held.remarks);
 }
 
 #[test]

@@ -144,6 +144,15 @@ impl Scenario {
         self.set_limit((actuator, key), limit, |kind| kind.joint_effort_limit_mut(slides))
     }
 
+    /// Takes the stops from a joint of a vehicle, and gives the override that does the same.
+    pub fn lift_stops(&mut self, vehicle: usize, joint: &str) -> Option<String> {
+        let list = &mut self.vehicles.get_mut(vehicle)?.unstopped_joints;
+        list.push(joint.to_owned());
+        let text = format!("vehicle[{vehicle}].unstopped_joints={list:?}");
+        self.source.overrides.push(text.clone());
+        Some(text)
+    }
+
     /// Sets a limit of an actuator where it has that key.
     fn set_limit(
         &mut self,

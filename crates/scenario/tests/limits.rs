@@ -201,3 +201,18 @@ fn a_ratio_without_a_grain_and_a_grain_without_a_ratio_are_refused() {
     assert!(said.contains("grain") && said.contains("give the friction an across_ratio"), "{said}");
     assert!(built(&format!("{floor}{ratio}{grain}")).is_ok());
 }
+
+#[test]
+fn a_joint_whose_range_is_no_stop_goes_on_beyond_it_and_one_that_is_not_there_is_refused() {
+    let file = format!("{}/../../crates/diagnose/tests/rigs/swing.toml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&file).unwrap();
+    let of = |joint: &str| {
+        let lifted = format!("vehicle[0].unstopped_joints=[\"{joint}\"]");
+        build(&parse(&text, &file, &[lifted]).unwrap()).map_err(|e| e.to_string())
+    };
+    let range = |mission: &Mission| mission.world.model().coordinates[0].limits;
+    assert_eq!(range(&build(&parse(&text, &file, &[]).unwrap()).unwrap()), Some([-100.0, 100.0]));
+    assert_eq!(range(&of("hinge").unwrap()), None);
+    let said = of("hing").err().unwrap();
+    assert!(said.contains("vehicle[0].unstopped_joints[0]") && said.contains("did you mean \"hinge\"?"), "{said}");
+}

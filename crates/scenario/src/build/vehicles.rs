@@ -4,7 +4,7 @@ use super::effects::{self, Entry};
 use super::faults::Faults;
 use super::stock::Stock;
 use crate::spec::{BaseAxis, Environment, Scenario, Vehicle};
-use multibody::{RobotDescription, Tree, UrdfWarnings};
+use multibody::{JointDescription, JointKind, RobotDescription, Tree, UrdfWarnings};
 use sim::VehicleSpec;
 use spatial::Vec3;
 use std::path::PathBuf;
@@ -33,7 +33,8 @@ pub(super) fn load(scenario: &Scenario, plan: &[Entry<'_>], stock: &Stock, fault
         let folders: Vec<PathBuf> = vehicle.package_paths.iter().map(|p| dir.join(p)).collect();
         let asked = (dir.join(&vehicle.urdf), folders);
         match stock.robot(&asked.0, &asked.1) {
-            Ok(found) => {
+            Ok(mut found) => {
+                lift_stops(&mut found.robot, (i, vehicle), faults);
                 loaded.push((found.robot, base(scenario, i, vehicle, faults)));
                 warnings.push(found.warnings);
             }
@@ -59,6 +60,21 @@ pub(super) fn load(scenario: &Scenario, plan: &[Entry<'_>], stock: &Stock, fault
     };
     let specs = scenario.vehicles.iter().zip(robots.iter().zip(bases)).map(spec).collect();
     Some(Loaded { files: RobotFiles { robots, warnings }, nominal_coms, specs })
+}
+
+/// Takes the range from the joints that are named to have none.
+fn lift_stops(robot: &mut RobotDescription, (i, vehicle): (usize, &Vehicle), faults: &mut Faults<'_>) {
+    let is_single = |j: &&JointDescription| matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
+    let names: Vec<String> = robot.joints.iter().filter(is_single).map(|j| j.name.clone()).collect();
+    for (k, wanted) in vehicle.unstopped_joints.iter().enumerate() {
+        match robot.joints.iter_mut().find(|j| names.contains(&j.name) && j.name == *wanted) {
+            Some(joint) => joint.position_limits = None,
+            None => {
+                let key = format!("vehicle[{i}].unstopped_joints[{k}]");
+                faults.unknown(&key, "joint with a range", wanted, names.iter().map(String::as_str));
+            }
+        }
+    }
 }
 
 fn base(scenario: &Scenario, i: usize, vehicle: &Vehicle, faults: &mut Faults<'_>) -> sim::Base {

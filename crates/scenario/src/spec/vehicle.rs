@@ -22,6 +22,9 @@ pub struct Vehicle {
     /// Folders in which `package://` paths of the URDF are looked up, relative to the scenario file.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub package_paths: Vec<String>,
+    /// Joints whose range in the URDF is no stop: what plans motions has one where nothing stops the joint.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unstopped_joints: Vec<String>,
     /// How the base is held: "free", "fixed", or { free = ["x", "y", "yaw"] }.
     #[serde(default)]
     pub base: Base,
