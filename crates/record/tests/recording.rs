@@ -400,3 +400,22 @@ proptest! {
         let _ = RecordingSet::load(exact(&text, &[("a.csv", b"t,x\n0,1\n1,2\n")]).path());
     }
 }
+
+#[test]
+fn a_joint_that_begins_anew_after_a_full_turn_goes_on_and_a_sliding_one_is_left_alone() {
+    let row = |t: usize| {
+        let angle = 0.05 * t as f64;
+        let read = angle.sin().atan2(angle.cos());
+        format!("{},{read},{}\n", t as f64 * 0.01, read.to_degrees())
+    };
+    let text = (0..400).fold("t,joint.a.position,b\n".to_owned(), |text, t| text + &row(t));
+    let head = format!("{HEAD}[channels]\n\"joint.b.position\" = {{ column = \"b\", unit = \"deg\" }}\n");
+    let set = load(folder(&head, &[("a.csv", &text)]).path());
+    for channel in ["joint.a.position", "joint.b.position"] {
+        let values = &set.runs[0].series(channel).unwrap().values;
+        assert!(values.iter().enumerate().all(|(t, q)| (q - 0.05 * t as f64).abs() < 1e-9), "{channel}");
+    }
+    assert!(said(&set).contains("begins anew 3 times after a full turn"), "{}", said(&set));
+    let slides = "t,joint.a.position\n0,0\n0.1,6\n0.2,0.1\n0.3,12\n";
+    assert_eq!(load(one(slides).path()).runs[0].series[0].values, [0.0, 6.0, 0.1, 12.0]);
+}

@@ -7,7 +7,7 @@ use super::quantum::find_quantum;
 use super::spelling::{hint, listed, nearest};
 use super::table::Table;
 use super::time::{self, Merge, Timeline};
-use super::{RecordedRun, RecordingSet, Remark, Series, Severity, orientation};
+use super::{RecordedRun, RecordingSet, Remark, Series, Severity, orientation, turns};
 use crate::RecordError;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -188,7 +188,10 @@ fn read_stretch(
                 let (times, values, again) = time::samples(&timeline, source.values, merge);
                 merged += again;
                 let step = find_quantum(&values_of(&timeline, source.values)) * source.factor.abs();
-                let values = values.into_iter().map(|v| v * source.factor).collect();
+                let mut values: Vec<f64> = values.into_iter().map(|v| v * source.factor).collect();
+                if quantity.is_angle() {
+                    say_turns(source.channel, turns::unwind(&mut values), &mut remarks);
+                }
                 let known = series.last().map(|s: &Series| &s.times).filter(|known| known[..] == times[..]);
                 let times = known.map_or_else(|| times.into(), Arc::clone);
                 series.push(Series::with_quantum(source.channel, times, values, step));
@@ -261,6 +264,13 @@ fn add_orientations(
         }
     }
     merged
+}
+
+fn say_turns(channel: &str, times: usize, remarks: &mut Vec<Remark>) {
+    if times > 0 {
+        let what = format!("begins anew {times} times after a full turn; made continuous");
+        remarks.push(Remark::new(Severity::Note, what).of_channel(channel));
+    }
 }
 
 fn say_orientation(prefix: &str, read: &orientation::Orientation, remarks: &mut Vec<Remark>) {

@@ -77,6 +77,11 @@ const XYZ: [&str; 3] = ["x", "y", "z"];
 const WXYZ: [&str; 4] = ["w", "x", "y", "z"];
 
 impl Quantity {
+    /// Whether it may be an angle that a sensor tells up to whole turns.
+    pub fn is_angle(self) -> bool {
+        matches!(self, Self::JointPosition | Self::JointLinkPosition | Self::JointPositionCommand | Self::DriveAngle)
+    }
+
     /// What its unit may measure: a joint turns or slides.
     pub fn dimensions(self) -> &'static [Dimension] {
         match self {

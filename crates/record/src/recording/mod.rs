@@ -18,6 +18,7 @@ mod series;
 mod spelling;
 mod table;
 mod time;
+mod turns;
 pub mod units;
 
 pub use channel_name::{ChannelName, Quantity};
