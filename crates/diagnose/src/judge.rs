@@ -53,10 +53,11 @@ pub struct Scalar {
 pub fn judge(
     (few, all): (&Stage<'_>, &Stage<'_>),
     plant: &Plant,
-    (nominal, found): ([&Fit; 2], &Fit),
+    (nominal, found): ([&Fit; 2], [&Fit; 2]),
     (window, follows): (f64, bool),
 ) -> Result<Judgement, DiagnoseError> {
-    let [few_tapes, all_tapes] = [few, all].map(|stage| as_late_as(&found.built, stage.tapes));
+    let set = &found[0].set;
+    let [few_tapes, all_tapes] = [few, all].map(|stage| as_late_as(&found[0].built, stage.tapes));
     let few = &Stage { tapes: &few_tapes, ..*few };
     let all = &Stage { tapes: &all_tapes, ..*all };
     let predict = |fit: Fit| Prediction {
@@ -64,22 +65,19 @@ pub fn judge(
         fit,
     };
     let of = |[known, runs]: [&Fit; 2]| -> Result<[Prediction; 2], DiagnoseError> {
-        let is_last = known.set.members.len() == found.set.members.len();
+        let is_last = known.set.members.len() == set.members.len();
         let stage = Stage { pace: if is_last { all.pace } else { few.pace }, ..*few };
         let set = known.set.frozen();
         let built = plant.build(&set.effects())?;
-        let runs = if is_last { found } else { runs };
+        let runs = if is_last { found[1] } else { runs };
         let model = Candidate { stage, plant, set, built, is_last, known, runs };
-        let starts = match follows && is_last {
-            true => model.starts_along_runs(window)?,
-            false => model.starts_in_windows(window)?,
-        };
+        let starts = if follows { model.starts_along_runs(window)? } else { model.starts_in_windows(window)? };
         Ok(starts.map(predict))
     };
     let [windows_before, runs_before] = of(nominal)?;
-    let [windows_after, runs_after] = match found.set.members.is_empty() {
+    let [windows_after, runs_after] = match set.members.is_empty() {
         true => [windows_before.clone(), runs_before.clone()],
-        false => of([found, found])?,
+        false => of(found)?,
     };
     Ok(Judgement { windowed: [windows_before, windows_after], whole: [runs_before, runs_after] })
 }
@@ -152,12 +150,7 @@ impl Candidate<'_> {
         if !self.is_last {
             begin_from(&self.stage, &mut runs, &self.runs.segments);
         }
-        // What is far off already in windows goes astray from wherever its runs begin.
-        let is_far = !self.is_last && windowed.rms() > PLAUSIBLE;
-        let whole = match is_far {
-            true => self.fit(runs, Effort { iterations: 0, ..self.effort() })?,
-            false => self.follow(&runs)?,
-        };
+        let whole = self.follow(&runs)?;
         self.say("whole runs", &whole);
         Ok([windowed, whole])
     }

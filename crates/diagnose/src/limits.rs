@@ -8,7 +8,6 @@ use crate::number::short;
 use crate::plant::{Built, Plant};
 use crate::reading::{Reading, Value};
 use crate::tape::{CommandTape, Commanded, Tape};
-use multibody::JointKind;
 use record::{RecordingSet, Series};
 use scenario::Scenario;
 use scenario::measure::Quantity;
@@ -55,10 +54,9 @@ pub(crate) fn unstopped(plant: &Plant, built: &Built, tapes: &[Tape]) -> Option<
     for (v, vehicle) in built.model.vehicles.iter().enumerate() {
         for joint in vehicle.tree.joints.iter().filter(|j| !j.is_mimic) {
             let Some([lower, upper]) = joint.position_limits else { continue };
-            let yields = if joint.kind == JointKind::Prismatic { YIELDS[1] } else { YIELDS[0] };
-            let Some(far) = place_beyond(tapes, vehicle.v0 + joint.v_index, [lower - yields, upper + yields]) else {
-                continue;
-            };
+            let coordinate = vehicle.v0 + joint.v_index;
+            let yields = YIELDS[usize::from(built.model.slides(coordinate))];
+            let Some(far) = place_beyond(tapes, coordinate, [lower - yields, upper + yields]) else { continue };
             let range = format!("{} … {}", short(lower), short(upper));
             let now = scenario.lift_stops(v, &joint.name);
             passed.extend(now.map(|now| format!("{} ({} beyond {range}; {now})", joint.name, short(far))));
@@ -80,16 +78,24 @@ const YIELDS: [f64; 2] = [2e-2, 2e-3];
 fn place_beyond(tapes: &[Tape], coordinate: usize, [lower, upper]: [f64; 2]) -> Option<f64> {
     let is_place = |r: &&Reading| matches!(r.quantity, Quantity::JointPosition(v) | Quantity::JointLinkPosition(v) if v == coordinate);
     let readings: Vec<&Reading> = tapes.iter().flat_map(|t| &t.readings).filter(is_place).collect();
-    let value = |v: &Value| match v {
+    let outside = |r: &Reading, q: f64| (lower - q).max(q - upper) - DEVIATIONS * r.sigma;
+    let places = readings.iter().flat_map(|r| r.values.iter().map(scalar).map(|q| (outside(r, q), q)));
+    let count = readings.iter().map(|r| r.values.len()).sum();
+    farthest(places.filter(|p| p.0 > 0.0).collect(), count)
+}
+
+/// Of samples beyond a limit, how far and what each is, the farthest that outliers among so many do not explain.
+fn farthest(mut beyond: Vec<(f64, f64)>, count: usize) -> Option<f64> {
+    beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
+    beyond.get(SAMPLES.max((SHARE * count as f64) as usize)).map(|p| p.1)
+}
+
+/// What is read of a joint.
+fn scalar(value: &Value) -> f64 {
+    match value {
         Value::Vector(v) => v.x,
         Value::Rotation(_) => f64::NAN,
-    };
-    let outside = |r: &Reading, q: f64| (lower - q).max(q - upper) - DEVIATIONS * r.sigma;
-    let places = readings.iter().flat_map(|r| r.values.iter().map(|q| (outside(r, value(q)), value(q))));
-    let mut beyond: Vec<(f64, f64)> = places.filter(|p| p.0 > 0.0).collect();
-    beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let count: usize = readings.iter().map(|r| r.values.len()).sum();
-    beyond.get(SAMPLES.max((SHARE * count as f64) as usize)).map(|p| p.1)
+    }
 }
 
 /// The largest speed at which a joint was pushed on that outliers do not explain, where it is beyond the limit.
@@ -106,20 +112,15 @@ fn speed_beyond(tapes: &[Tape], (actuator, coordinate): (usize, usize), limit: f
             let passes = |(t, v, sigma): &(f64, f64, f64)| {
                 v.abs() - DEVIATIONS * sigma > (1.0 + MARGIN) * limit && command.at(*t) * v > 0.0
             };
-            beyond.extend(speeds.iter().filter(|s| passes(s)).map(|(_, v, _)| v.abs()));
+            beyond.extend(speeds.iter().filter(|s| passes(s)).map(|(_, v, _)| (v.abs(), v.abs())));
         }
     }
-    beyond.sort_by(|a: &f64, b| b.total_cmp(a));
-    let outliers = SAMPLES.max((SHARE * count as f64) as usize);
-    beyond.get(outliers).copied()
+    farthest(beyond, count)
 }
 
 /// Instants, speeds and their standard deviations by what a reading says of a joint: measured, or told by positions some samples apart.
 fn speeds_of(reading: &Reading, coordinate: usize) -> Vec<(f64, f64, f64)> {
-    let value = |i: usize| match reading.values[i] {
-        Value::Vector(v) => v.x,
-        Value::Rotation(_) => f64::NAN,
-    };
+    let value = |i: usize| scalar(&reading.values[i]);
     let apart = |i: usize| {
         let (from, to) = (reading.times[i], reading.times[i + APART]);
         let speed = (value(i + APART) - value(i)) / (to - from);

@@ -199,7 +199,7 @@ impl Stage<'_> {
     fn readings_from(&self, built: &Built, segment: &Segment, start: &Start) -> Option<Vec<Measured>> {
         let tape = &self.tapes[segment.run];
         let heard = self.hears.filter(|_| may_follow(built)).map_or(tape, |longest| tape.heard_at(longest));
-        let found = readings(built, (tape, heard), start, segment.span, self.pace);
+        let found = readings(built, tape, heard, start, segment.span, self.pace);
         let work = found.as_ref().map_or_else(|_| sim::Work::default(), |r| r.work);
         self.work.add(segment.span.to - segment.span.from, built.model.owners.len(), &work);
         found.ok().map(|r| r.values)

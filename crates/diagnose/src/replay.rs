@@ -87,7 +87,8 @@ pub fn observe(
 /// Replays a span for what its sensors would read; `heard`: commands as they are heard, the tape itself or means of its commands.
 pub fn readings(
     built: &Built,
-    (tape, heard): (&Tape, &Tape),
+    tape: &Tape,
+    heard: &Tape,
     start: &Start,
     span: Span,
     pace: Pace,

@@ -200,7 +200,7 @@ fn diagnose_in(
         said.push(SPENT.to_owned());
     }
     clock.stage("predict every run", 0.85);
-    let judgement = judge((&few, &stage), &plant, ([&nominal, &whole], &found), (window, follows))?;
+    let judgement = judge((&few, &stage), &plant, ([&nominal, &whole], [&found, &found]), (window, follows))?;
     let left = left_by((&few, &thin), &plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
     let (explained, helps) = share::explained(&judgement, &tapes, &found, window);
@@ -326,10 +326,8 @@ fn predict_along(
     let whole = follow_with(few, plant, best.set.frozen(), &runs, Effort::JUDGED)?;
     let follows = whole.rms() < lost::NEAR;
     let windows = along::windows_of(&along::problem(few, plant, own, Role::Fit), best, window);
-    // Runs that are followed begin where they were found to.
-    let segments = whole.segments.iter().chain(&corrected.segments).cloned().collect();
-    let corrected = Fit { set: best.set.clone(), built: best.built.clone(), segments, ..corrected };
-    let judgement = judge((few, all), plant, ([&known, &known], &corrected), (window, follows))?;
+    let corrected = Fit { set: best.set.clone(), built: best.built.clone(), ..corrected };
+    let judgement = judge((few, all), plant, ([&known, &known], [&corrected, &whole]), (window, follows))?;
     // A run that is followed in windows and not as a whole says how far ahead the model tells, not how good it is.
     let error = |run: usize, windowed: bool| judgement.rms(windowed, |r| r == run)[1];
     let goes_astray = |run: usize| error(run, false) >= lost::NEAR && error(run, true) < lost::NEAR;

@@ -149,8 +149,7 @@ impl Scenario {
         let list = &mut self.vehicles.get_mut(vehicle)?.unstopped_joints;
         list.push(joint.to_owned());
         let text = format!("vehicle[{vehicle}].unstopped_joints={list:?}");
-        self.source.overrides.push(text.clone());
-        Some(text)
+        Some(self.source.overridden(text))
     }
 
     /// Sets a limit of an actuator where it has that key.
@@ -161,9 +160,7 @@ impl Scenario {
         of: impl FnOnce(&mut ActuatorKind) -> Option<&mut Option<f64>>,
     ) -> Option<String> {
         of(&mut self.actuators.get_mut(actuator)?.kind)?.replace(limit);
-        let text = format!("actuator[{actuator}].{key}={limit:?}");
-        self.source.overrides.push(text.clone());
-        Some(text)
+        Some(self.source.overridden(format!("actuator[{actuator}].{key}={limit:?}")))
     }
 
     /// Where a value was written: the nearest place in the file, or the override that set it.

@@ -84,7 +84,10 @@ impl Coarse {
         let Some(longest) = longest else {
             return Self { heard: Arc::new(silent(tape, tape.commands.clone())), longest: own, instants, most: 0 };
         };
-        let most = clock_of(&instants, longest);
+        let mut gaps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
+        gaps.sort_by(f64::total_cmp);
+        let usual = gaps.get(gaps.len() / 2).copied().unwrap_or(longest);
+        let most = (longest / usual + SAME).max(1.0).log2().floor() as u32;
         let heard = Arc::new(heard(tape, &cells(&instants, 1 << most, longest)));
         Self { heard, longest, instants, most }
     }
@@ -170,14 +173,6 @@ impl Few {
 /// A run's commands in cells of a length at most, each its mean.
 pub(crate) fn heard_in_cells(tape: &Tape, longest: f64) -> Arc<Tape> {
     Coarse::new(tape, longest, Some(longest)).heard
-}
-
-/// The largest power of two of instants that pass in a while.
-fn clock_of(instants: &[f64], longest: f64) -> u32 {
-    let mut gaps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
-    gaps.sort_by(f64::total_cmp);
-    let usual = gaps.get(gaps.len() / 2).copied().unwrap_or(longest);
-    (longest / usual + SAME).max(1.0).log2().floor() as u32
 }
 
 /// Begins of cells between every k-th instant, none longer than that.

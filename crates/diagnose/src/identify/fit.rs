@@ -333,9 +333,9 @@ impl<'a> Problem<'a> {
         let mut halved = 0i32;
         for iteration in 0..reach.iterations {
             let steps = if iteration == 0 { STEPS[0] } else { STEPS[1] };
-            let here = self.here(&mut now, reach.reuse || iteration > 0, steps);
-            let is_worse = |b: &Fitted| here.as_ref().map_or(true, |h| h.2.is_nan() || h.2 > b.score + CONVERGED);
-            if let Some(last) = before.as_ref().filter(|b| is_worse(b)) {
+            let most = before.as_ref().map_or(f64::INFINITY, |b| b.score + CONVERGED);
+            let here = self.here(&mut now, (&slots, &sizes), (reach.reuse || iteration > 0, steps), most);
+            if let Some(last) = before.as_ref().filter(|_| here.is_err()) {
                 if halved >= HALVINGS {
                     return Ok(Fitted { converged: false, ..last.clone() });
                 }
@@ -343,9 +343,7 @@ impl<'a> Problem<'a> {
                 now = self.between(last, &now, NEARER.powi(halved))?;
                 continue;
             }
-            let (bare, here, score) = here?;
-            let variations = vary(self.plant, &now.set, &slots, &sizes)?;
-            let made = self.with_columns(&mut now, bare, &variations)?;
+            let (made, here, score) = here?;
             let ridge = ridge_of(&now.set, slots.len());
             let chains = made.chains(&(0..slots.len()).collect::<Vec<_>>());
             let found = estimate(&chains, Some(&ridge), &here.spread, STEPS[1]);
@@ -371,14 +369,25 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// A set where it stands, with the spread that is likeliest there, and its score: columns are taken where that was no step too far.
-    fn here(&self, now: &mut Fitted, reuse: bool, steps: usize) -> Result<(Exact, Estimate, f64), DiagnoseError> {
-        let bare = self.exact(now, reuse)?;
-        let made = self.with_columns(now, bare.clone(), &[])?;
+    /// A set made linear where it stands, with the spread that is likeliest there, and its score; an error where that is more than a bound, before any
+    /// column is taken.
+    fn here(
+        &self,
+        now: &mut Fitted,
+        (slots, sizes): (&[(usize, usize)], &[f64]),
+        (reuse, steps): (bool, usize),
+        most: f64,
+    ) -> Result<(Made, Estimate, f64), DiagnoseError> {
+        let exact = self.exact(now, reuse)?;
+        let made = self.with_columns(now, &exact, &[])?;
         // Which intervals are not followed is another question each time.
         let here = estimate(&made.chains(&[]), None, &now.spread.without_local_noise(), steps);
         let score = here.score + now.set.prior_cost() - now.datum;
-        Ok((bare, here, score))
+        if most.is_finite() && (score.is_nan() || score > most) {
+            return Err(self.lost());
+        }
+        let variations = vary(self.plant, &now.set, slots, sizes)?;
+        Ok((self.with_columns(now, &exact, &variations)?, here, score))
     }
 
     /// A set, or the largest share of the way to it from another one, or from what changes nothing, that is a model: a linear step knows nothing of what a
@@ -486,7 +495,7 @@ impl<'a> Problem<'a> {
     /// Everything linear about the states of a fit, with a column for each variation.
     pub fn linearise(&self, now: &mut Fitted, variations: &[Variation], reuse: bool) -> Result<Made, DiagnoseError> {
         let exact = self.exact(now, reuse)?;
-        self.with_columns(now, exact, variations)
+        self.with_columns(now, &exact, variations)
     }
 
     /// What a fit reads where it stands, its derivatives by states and forces taken anew where these are not to be reused.
@@ -502,10 +511,10 @@ impl<'a> Problem<'a> {
     }
 
     /// The same with a column for each variation.
-    fn with_columns(&self, now: &mut Fitted, exact: Exact, variations: &[Variation]) -> Result<Made, DiagnoseError> {
+    fn with_columns(&self, now: &mut Fitted, exact: &Exact, variations: &[Variation]) -> Result<Made, DiagnoseError> {
         let frame = self.frame(now);
-        let of_run = |(track, exact): (&Track, Vec<Base>)| frame.bases(track, exact, variations);
-        let bases: Option<Vec<Bases>> = now.tracks.par_iter().zip(exact).map(of_run).collect();
+        let all = now.tracks.par_iter().zip(exact);
+        let bases: Option<Vec<Bases<'_>>> = all.map(|(t, exact)| frame.bases(t, exact, variations)).collect();
         let bases = bases.ok_or_else(|| self.lost())?;
         let links = now.links.clone();
         let steady = self.steady(now, &bases, variations);
@@ -529,7 +538,7 @@ impl<'a> Problem<'a> {
 
     /// Columns of the numbers that have a tolerance: known ones, as long as the numbers stand next to where they were taken. What is only usually off, where
     /// the scenario declares nothing, is off by little, and there are many of them.
-    fn steady(&self, now: &Fitted, bases: &[Bases], variations: &[Variation]) -> Steady {
+    fn steady(&self, now: &Fitted, bases: &[Bases<'_>], variations: &[Variation]) -> Steady {
         let taken: Vec<&Variation> = variations.iter().filter(|v| v.is_tolerated).collect();
         let at = now.set.within_tolerances();
         let is_whole = |(own, track): (&Arc<Columns>, &Track)| {
@@ -542,8 +551,9 @@ impl<'a> Problem<'a> {
             return known.clone();
         }
         let frame = self.frame(now);
-        let columns =
-            |(t, b): (&Track, &Bases)| Arc::new(taken.par_iter().map(|v| frame.columns(t, b, v)).collect::<Columns>());
+        let columns = |(t, b): (&Track, &Bases<'_>)| {
+            Arc::new(taken.par_iter().map(|v| frame.columns(t, b, v)).collect::<Columns>())
+        };
         Steady { runs: now.tracks.par_iter().zip(bases).map(columns).collect(), at }
     }
 

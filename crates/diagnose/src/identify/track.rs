@@ -34,9 +34,9 @@ pub type Base = (DVector<f64>, Start);
 
 /// What all intervals of a run read and where they end: as exactly as it is judged, and as derivatives are taken.
 #[derive(Clone, Debug)]
-pub struct Bases {
+pub struct Bases<'a> {
     /// For residuals.
-    pub exact: Vec<Base>,
+    pub exact: &'a [Base],
     /// For difference quotients at the coarser clock, at few events.
     coarse: Vec<Base>,
 }
@@ -264,18 +264,18 @@ impl Frame<'_> {
     }
 
     /// Columns of a number along a run: ∂r/∂θ and ∂end/∂θ of each interval.
-    pub fn columns(&self, track: &Track, bases: &Bases, variation: &Variation) -> Vec<Column> {
+    pub fn columns(&self, track: &Track, bases: &Bases<'_>, variation: &Variation) -> Vec<Column> {
         let mut out = Vec::with_capacity(track.intervals.len());
         self.put_columns(track, bases, variation, |column| out.push(column));
         out
     }
 
     /// The same one after the other, carried from interval to interval as far as the number brings memory of its own.
-    fn put_columns(&self, track: &Track, bases: &Bases, variation: &Variation, mut put: impl FnMut(Column)) {
+    fn put_columns(&self, track: &Track, bases: &Bases<'_>, variation: &Variation, mut put: impl FnMut(Column)) {
         let brings = has_memory(&variation.built, self.built);
         let mut carried: Option<Start> = None;
         let is_coarse = self.is_coarse_with(variation);
-        let bases = if is_coarse { &bases.coarse } else { &bases.exact };
+        let bases = if is_coarse { &bases.coarse } else { bases.exact };
         for (interval, (r, end)) in track.intervals.iter().zip(bases) {
             let mut start = interval.start.fitted_to(&variation.built);
             if let Some(before) = carried.as_ref().filter(|_| brings) {
@@ -315,7 +315,7 @@ impl Frame<'_> {
     }
 
     /// The same beside what derivatives by some variations are taken from; none where a replay left the range of numbers.
-    pub fn bases(&self, track: &Track, exact: Vec<Base>, variations: &[Variation]) -> Option<Bases> {
+    pub fn bases<'b>(&self, track: &Track, exact: &'b [Base], variations: &[Variation]) -> Option<Bases<'b>> {
         let glance = |i: &Interval| self.glance(self.built, track.run, i, &i.start);
         let coarse = if variations.iter().any(|v| self.is_coarse_with(v)) {
             track.intervals.par_iter().map(glance).collect()
@@ -404,7 +404,7 @@ impl Frame<'_> {
     /// Residuals and defects of a run, as they would be without the forces that push it, beside columns of numbers.
     ///
     /// Columns are written where they stay: those of a screen are hundreds of megabytes.
-    pub fn sides(&self, track: &Track, links: &[Link], bases: &Bases, sources: &[Source<'_>]) -> Vec<Side> {
+    pub fn sides(&self, track: &Track, links: &[Link], bases: &Bases<'_>, sources: &[Source<'_>]) -> Vec<Side> {
         let side = |i: usize| self.bare_side(track, (&links[i], &bases.exact[i]), (i, sources.len()));
         let mut sides: Vec<Side> = (0..track.intervals.len()).map(side).collect();
         let mut places: Vec<Vec<_>> = sources.iter().map(|_| Vec::with_capacity(track.intervals.len())).collect();

@@ -42,9 +42,7 @@ fn a_flight_that_no_force_sensor_cuts_reads_the_same() {
     let (built, tape, start) = docking();
     let span = Span { from: 0.0, to: 0.7 };
     let read = |free: f64| {
-        readings(&built, (&tape, &tape), &start, span, Pace { step: 2.5e-4, ..Pace::even(free) })
-            .expect("it runs")
-            .values
+        readings(&built, &tape, &tape, &start, span, Pace { step: 2.5e-4, ..Pace::even(free) }).expect("it runs").values
     };
     let (short, long) = (read(2.5e-4), read(16e-3));
     let norm = |m: &Measured| if let Measured::Vector(v) = m { v.norm() } else { f64::NAN };
@@ -67,7 +65,7 @@ fn what_is_told_of_before_a_window_is_no_residual_of_it() {
     let readings: Vec<Reading> = tape.readings.iter().map(|r| Reading { late_s: late, ..r.clone() }).collect();
     let masked = Tape { readings, ..tape.clone() };
     let span = Span { from: 0.0, to: 0.2 };
-    let read = super::readings(&built, (&tape, &tape), &start, span, Pace::even(2.5e-4)).expect("it runs").values;
+    let read = super::readings(&built, &tape, &tape, &start, span, Pace::even(2.5e-4)).expect("it runs").values;
     let residuals = |tape: &Tape| residuals_of(&read, &built, tape, span).expect("all are measured");
     let (all, judged) = (residuals(&tape), residuals(&masked));
     let of_events = tape.events[tape.range(span)].iter().flat_map(|e| [e.time; 3]);
@@ -137,7 +135,7 @@ fn a_flight_with_a_mount_at_rest_reads_the_same() {
     let span = Span { from: 0.0, to: 0.7 };
     let fill = |start: &Start| Start { q: vec![0.0; 3], v: vec![0.0; 3], ..start.clone() };
     let read = |free: f64| {
-        readings(&built, (&tape, &tape), &fill(&start), span, Pace { step: 2.5e-4, ..Pace::even(free) })
+        readings(&built, &tape, &tape, &fill(&start), span, Pace { step: 2.5e-4, ..Pace::even(free) })
             .expect("it runs")
             .values
     };
@@ -198,7 +196,7 @@ fn what_is_handed_on_at_a_tick_remembers_what_the_drive_gave() {
     let tape = Tape::assemble(("swing", Role::Fit), commands, vec![reading]);
     let (start, pace) = (Start::nominal(&built), Pace::even(1e-3));
     let read = |start: &Start, from: f64| {
-        readings(&built, (&tape, &tape), start, Span { from, to: 1.0 }, pace).expect("it runs").values
+        readings(&built, &tape, &tape, start, Span { from, to: 1.0 }, pace).expect("it runs").values
     };
     let whole = read(&start, 0.0);
     let handed = starts_along(&built, &tape, &start, pace, &[0.0, 0.5]).expect("it runs");

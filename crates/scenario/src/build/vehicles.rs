@@ -34,7 +34,7 @@ pub(super) fn load(scenario: &Scenario, plan: &[Entry<'_>], stock: &Stock, fault
         let asked = (dir.join(&vehicle.urdf), folders);
         match stock.robot(&asked.0, &asked.1) {
             Ok(mut found) => {
-                lift_stops(&mut found.robot, (i, vehicle), faults);
+                lift_stops(&mut found.robot, i, vehicle, faults);
                 loaded.push((found.robot, base(scenario, i, vehicle, faults)));
                 warnings.push(found.warnings);
             }
@@ -63,17 +63,15 @@ pub(super) fn load(scenario: &Scenario, plan: &[Entry<'_>], stock: &Stock, fault
 }
 
 /// Takes the range from the joints that are named to have none.
-fn lift_stops(robot: &mut RobotDescription, (i, vehicle): (usize, &Vehicle), faults: &mut Faults<'_>) {
-    let is_single = |j: &&JointDescription| matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
-    let names: Vec<String> = robot.joints.iter().filter(is_single).map(|j| j.name.clone()).collect();
+fn lift_stops(robot: &mut RobotDescription, i: usize, vehicle: &Vehicle, faults: &mut Faults<'_>) {
+    let is_single = |j: &JointDescription| matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
     for (k, wanted) in vehicle.unstopped_joints.iter().enumerate() {
-        match robot.joints.iter_mut().find(|j| names.contains(&j.name) && j.name == *wanted) {
-            Some(joint) => joint.position_limits = None,
-            None => {
-                let key = format!("vehicle[{i}].unstopped_joints[{k}]");
-                faults.unknown(&key, "joint with a range", wanted, names.iter().map(String::as_str));
-            }
+        if let Some(joint) = robot.joints.iter_mut().find(|j| is_single(j) && j.name == *wanted) {
+            joint.position_limits = None;
+            continue;
         }
+        let names = robot.joints.iter().filter(|j| is_single(j)).map(|j| j.name.as_str());
+        faults.unknown(&format!("vehicle[{i}].unstopped_joints[{k}]"), "joint with a range", wanted, names);
     }
 }
 

@@ -22,6 +22,12 @@ impl PartialEq for Source {
 }
 
 impl Source {
+    /// Adds an override that was made in the program, and gives it back.
+    pub(crate) fn overridden(&mut self, text: String) -> String {
+        self.overrides.push(text.clone());
+        text
+    }
+
     /// Name of the file, as it was given.
     pub fn file(&self) -> &str {
         &self.file
