@@ -203,7 +203,7 @@ pub(crate) fn as_fit(stage: &Stage<'_>, fitted: &Fitted, segments: Vec<Segment>)
 }
 
 /// What stands for a finding in other sets that are near the best one by the criterion: title of the finding, and its rival. A set that has all of the
-/// best one's findings and more stands for none of them, nor does a law that the finding is the plainer one of.
+/// best one's findings and more stands for none of them. Where a richer law of the same kind has a finding's place that is in the set as well.
 pub(crate) fn rivals(course: &Course) -> Vec<(String, Rival)> {
     let best = &course.found.best.set;
     let tried = &course.found.tried;
@@ -214,11 +214,12 @@ pub(crate) fn rivals(course: &Course) -> Vec<(String, Rival)> {
     let is_near = |t: &&Tried| t.criteria[1] - own < near_the_best(nominal - own);
     let mut found: Vec<(String, Rival)> = Vec::new();
     for other in tried.iter().filter(|t| !has_all(&t.set)).filter(is_near) {
-        for (h, _) in best.findings().filter(|(h, _)| !other.set.has_finding(h)) {
-            let is_richer = |(r, x): &&(Hypothesis, Vec<f64>)| {
-                r.place == h.place && r.plainer(x).iter().any(|plain| plain.name == h.name)
-            };
-            for (r, _) in other.set.findings().filter(|(r, _)| !best.has_finding(r)).filter(|m| !is_richer(m)) {
+        let is_richer = |(r, x): &(Hypothesis, Vec<f64>), h: &Hypothesis| {
+            r.place == h.place && r.plainer(x).iter().any(|plain| plain.name == h.name)
+        };
+        let has = |h: &Hypothesis| other.set.findings().any(|m| m.0.title() == h.title() || is_richer(m, h));
+        for (h, _) in best.findings().filter(|(h, _)| !has(h)) {
+            for (r, _) in other.set.findings().filter(|(r, _)| !best.has_finding(r)) {
                 let score_gap = other.criteria[1] - own;
                 let rival = Rival { name: r.name.to_owned(), place: r.place.clone(), score_gap };
                 match found

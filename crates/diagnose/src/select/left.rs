@@ -42,10 +42,21 @@ pub(super) fn is_as_quiet(spread: &Spread, than: &Spread) -> bool {
 /// Whether a channel that reads with more noise beside another spread than its sensor has is next to right beside this one: what is left of the unknown
 /// forces does not say how much of a sensor's fault is taken. `doubt`: mean square that a wrong figure of the noise may stand for.
 fn quiets(spread: &Spread, than: &Spread, doubt: f64) -> bool {
-    let excess = |noise: &f64| (noise * noise - 1.0 - doubt).max(0.0);
+    let excess = |noise: &f64| excess(*noise, doubt);
     let is_quieted =
         |(after, before): (&f64, &f64)| excess(before) > LOUD && excess(after) <= (1.0 - FURTHER[1]) * excess(before);
     spread.noise.iter().zip(&than.noise).any(is_quieted)
+}
+
+/// Gain by sample, −2 log likelihood, of a channel that is next to right where it read with this factor of its noise; none where that is its sensor's.
+pub(super) fn quieting(noise: f64, doubt: f64) -> Option<f64> {
+    let loud = excess(noise, doubt);
+    (loud > LOUD).then(|| (noise * noise / (noise * noise - FURTHER[1] * loud)).ln())
+}
+
+/// Mean square of a channel beyond that of its noise.
+fn excess(noise: f64, doubt: f64) -> f64 {
+    (noise * noise - 1.0 - doubt).max(0.0)
 }
 
 #[cfg(test)]

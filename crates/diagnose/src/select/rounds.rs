@@ -24,7 +24,7 @@ const SIBLINGS: usize = 2;
 /// Sets of one size among them that the missing force speaks for; of the largest one.
 const SPOKEN: usize = 2;
 /// Share of the best promise below which a set is not fitted, and of its own promise below which it was none.
-const PROMISING: f64 = 0.6;
+pub(super) const PROMISING: f64 = 0.6;
 const REFUTED: f64 = 0.1;
 /// Share of the most that a set gains by which first fits may be short of what they come to.
 const CLOSE: f64 = 0.02;
@@ -42,6 +42,8 @@ pub(super) struct Bounds {
     pub(super) all: f64,
     /// Whether what is left is so little that the laws may make it themselves: what does not promise its price is not looked at then.
     pub(super) is_own: bool,
+    /// Promise below which a set is not looked at: it could not come up with what was found on another way.
+    pub(super) least: f64,
 }
 
 /// Fits the sets that promise most in full simulation; the best of them, taken to the end, where it is worth its price, and the best of those with fewer effects.
@@ -49,7 +51,7 @@ pub(super) fn fit_sets(
     problem: &Problem<'_>,
     begun: &Fitted,
     looked: &Looked,
-    Bounds { round, many, cheapest, all, is_own }: Bounds,
+    Bounds { round, many, cheapest, all, is_own, least }: Bounds,
     tried: &mut Vec<Tried>,
 ) -> Result<Option<(Fitted, Option<Fitted>)>, DiagnoseError> {
     let mut now = begun;
@@ -67,7 +69,8 @@ pub(super) fn fit_sets(
         let added: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
         done.push(pool.titles(set.members.iter().map(|m| m.0)));
         let costs = pool.price(&set.members.iter().map(|m| m.0).collect::<Vec<_>>(), now.count);
-        if enough.iter().any(|known| known.outdoes(&added, costs)) || is_own && now.score - set.score < costs {
+        let promised = now.score - set.score;
+        if enough.iter().any(|known| known.outdoes(&added, costs)) || is_own && promised < costs || promised < least {
             continue;
         }
         let fit = fit_first(problem, now, &set, pool, (many, here));

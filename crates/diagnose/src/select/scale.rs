@@ -116,6 +116,11 @@ impl Scale {
         Self { inertia, readings, known }
     }
 
+    /// Intervals in which a force is known, of all forces.
+    pub fn known(&self) -> f64 {
+        self.known.sum()
+    }
+
     /// The price of some columns at some amplitudes; infinite where nothing is left to be moved.
     pub fn price(&self, columns: &[usize], amplitudes: &[f64]) -> f64 {
         let inertia = self.inertia.changed(columns, amplitudes).into_iter();

@@ -4,11 +4,11 @@ use super::detail::relaxed;
 use super::exchange::exchanged;
 use super::gamma_quantile_over_mean;
 use super::kin::alone_of_their_kind;
-use super::left::{Left, is_as_quiet};
+use super::left::{Left, is_as_quiet, quieting};
 use super::lines::lines;
 use super::pool::{Pool, price};
 use super::regression::{Regression, Spoken};
-use super::rounds::{Bounds, fit_sets};
+use super::rounds::{Bounds, PROMISING, fit_sets};
 use super::scale::Scale;
 use super::sets::{Ground, Grown};
 use crate::error::DiagnoseError;
@@ -65,6 +65,8 @@ pub(super) const FURTHER: [f64; 2] = [0.2, 0.75];
 const SMALL: f64 = 0.01;
 /// Share of what the unknown forces do (their power) that may be what steps and difference quotients make of the laws that were found.
 const OWN: f64 = 1e-5;
+/// Part of what a set has to gain which its promise has to be: promises of laws that hold and slip are short of what these bring.
+const HOPE: f64 = 0.25;
 /// Share of such a remainder (rise of −2 log likelihood) that something has to take to be more than that.
 const NEARLY: f64 = 0.9;
 /// Share of what the unknown forces do below which nothing is left to add.
@@ -99,13 +101,15 @@ pub fn search(
     let (many, all) = (first.len(), problem.power(&nominal));
     let found = Found { nominal: nominal.clone(), best: nominal, tried: Vec::new(), shown: Vec::new(), left: 0.0 };
     let (known, refused) = (first.clone(), Vec::new());
-    let mut search = Search { problem, hypotheses, many, all, numbers, known, refused, smaller: None, found };
+    let (smaller, goal) = (None, f64::INFINITY);
+    let mut search = Search { problem, hypotheses, many, all, numbers, known, refused, smaller, goal, found };
     let mut now = search.forward(search.found.nominal.clone(), 0)?;
     // Where the first step was one of several effects at once that lead nowhere, one with fewer of them may be the way.
     if let Some(smaller) = search.smaller.take().filter(|_| !problem.stage.work.is_spent(Until::Search))
         && !remainder(problem, &now)?.is_noise()
     {
         problem.stage.work.watch.step(&format!("on from {}", names(&smaller.set)));
+        search.goal = criterion(&now, many);
         let other = search.forward(smaller, 1)?;
         if criterion(&other, many) < criterion(&now, many) {
             now = other;
@@ -140,6 +144,8 @@ struct Search<'a> {
     refused: Vec<String>,
     /// The best of those with fewer effects than what the first round took.
     smaller: Option<Fitted>,
+    /// Criterion that a first set has to come up with, where another way has led to it already.
+    goal: f64,
     found: Found,
 }
 
@@ -159,7 +165,8 @@ impl Search<'_> {
             let left = left_of(problem, &now, &bare).rise;
             // What is so little may be the laws' own; what takes nearly all of it is not.
             let is_own = round > 0 && problem.power(&now) < OWN * all;
-            let bounds = Bounds { round, many, cheapest, all, is_own };
+            let least = if round == first { PROMISING * (criterion(&now, many) - self.goal).max(0.0) } else { 0.0 };
+            let bounds = Bounds { round, many, cheapest, all, is_own, least };
             // A nominal model that leaves nothing is still asked what these recordings can show.
             let is_done = round > 0 && left < cheapest;
             let is_settled = is_done || is_own;
@@ -194,6 +201,8 @@ impl Search<'_> {
         if round == 0 {
             (self.found.shown, self.found.left) = (shown(&looked.pool, &looked.grown), looked.grown.left);
         }
+        let asked = if round > 0 && !bounds.is_own { HOPE * looked.asked(problem, now, self.all) } else { 0.0 };
+        let bounds = Bounds { least: bounds.least.max(asked), ..bounds };
         let Some((best, smaller)) = fit_sets(problem, now, &looked, bounds, &mut self.found.tried)? else {
             return Ok(None);
         };
@@ -335,6 +344,22 @@ pub(super) struct Looked {
     pub(super) grown: Grown,
     /// By the missing force.
     pub(super) spoken: Vec<Spoken>,
+    /// Intervals in which the readings say what a force is, of all forces.
+    known: f64,
+    /// Samples of each channel.
+    samples: Vec<usize>,
+}
+
+impl Looked {
+    /// The least that something gains, −2 log likelihood, which takes its part of what a fit leaves: where forces are known in n intervals a variance
+    /// that is smaller by a share φ is a gain of −n ln(1 − φ); a channel that reads with more noise than its sensor has may be quieted as well.
+    fn asked(&self, problem: &Problem<'_>, now: &Fitted, all: f64) -> f64 {
+        let share = further(problem.power(now), all).min(FURTHER[1]);
+        let quieted = self.samples.iter().zip(&now.spread.noise).filter_map(|(n, noise)| {
+            Some(*n as f64 * quieting(*noise, problem.stage.doubt)?)
+        });
+        quieted.fold(-self.known * (-share).ln_1p(), f64::min)
+    }
 }
 
 /// Takes all columns beside a fit and grows sets of them.
@@ -360,7 +385,9 @@ fn look(problem: &Problem<'_>, now: &mut Fitted, all: Vec<Hypothesis>, most: usi
     let datum = now.datum;
     grown.sets.iter_mut().for_each(|s| (s.score, s.criterion) = (s.score - datum, s.criterion - datum));
     watch.step("sets grown");
-    Ok(Looked { pool, grown, spoken })
+    let mut samples = vec![0; now.spread.noise.len()];
+    made.runs.iter().flat_map(|run| run.channels.iter().flatten()).for_each(|c| samples[*c as usize] += 1);
+    Ok(Looked { known: scale.known(), samples, pool, grown, spoken })
 }
 
 /// A fit that is followed anew as long as that betters it: forces that pushed the runs beside other numbers hold these where they were.
