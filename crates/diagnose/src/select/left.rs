@@ -69,6 +69,13 @@ mod tests {
     }
 
     #[test]
+    fn a_channel_gains_by_what_it_is_quieted() {
+        assert_eq!(quieting(1.04, 0.06), None, "its figure may be wrong by that");
+        // A quarter of an excess of 3 is left: a variance of 4 becomes 1.75.
+        assert!((quieting(2.0, 0.0).unwrap() - (4.0f64 / 1.75).ln()).abs() < 1e-12);
+    }
+
+    #[test]
     fn a_loud_channel_has_to_become_next_to_right() {
         const DOUBT: f64 = 0.06;
         assert!(quiets(&with([1.0, 1.1]), &with([1.0, 2.0]), DOUBT));

@@ -355,9 +355,11 @@ impl Looked {
     /// that is smaller by a share φ is a gain of −n ln(1 − φ); a channel that reads with more noise than its sensor has may be quieted as well.
     fn asked(&self, problem: &Problem<'_>, now: &Fitted, all: f64) -> f64 {
         let share = further(problem.power(now), all).min(FURTHER[1]);
-        let quieted = self.samples.iter().zip(&now.spread.noise).filter_map(|(n, noise)| {
-            Some(*n as f64 * quieting(*noise, problem.stage.doubt)?)
-        });
+        let quieted = self
+            .samples
+            .iter()
+            .zip(&now.spread.noise)
+            .filter_map(|(n, noise)| Some(*n as f64 * quieting(*noise, problem.stage.doubt)?));
         quieted.fold(-self.known * (-share).ln_1p(), f64::min)
     }
 }
