@@ -207,8 +207,9 @@ pub(crate) fn rivals_by_round(attempts: &[Attempt], set: &EffectSet) -> Vec<(Str
         let Some(gain) = own.together.or(own.gain) else { return Vec::new() };
         let is_found = |a: &Attempt| set.findings().any(|(h, _)| h.title() == a.title());
         let same_round = attempts.iter().filter(|a| a.round == own.round && !is_found(a));
+        // One that is better by far was told in other windows than the chosen one in the end.
         let near =
-            same_round.filter_map(|a| a.gain.map(|g| (a, gain - g))).filter(|(_, gap)| *gap < near_the_best(gain));
+            same_round.filter_map(|a| a.gain.map(|g| (a, gain - g))).filter(|(_, gap)| gap.abs() < near_the_best(gain));
         near.map(|(a, score_gap)| (chosen.title(), Rival { name: a.name.clone(), place: a.place.clone(), score_gap }))
             .collect()
     };
