@@ -217,7 +217,7 @@ pub(crate) fn rivals(course: &Course) -> Vec<(String, Rival)> {
         let is_richer = |(r, x): &(Hypothesis, Vec<f64>), h: &Hypothesis| {
             r.place == h.place && r.plainer(x).iter().any(|plain| plain.name == h.name)
         };
-        let has = |h: &Hypothesis| other.set.findings().any(|m| m.0.title() == h.title() || is_richer(m, h));
+        let has = |h: &Hypothesis| other.set.has_finding(h) || other.set.findings().any(|m| is_richer(m, h));
         for (h, _) in best.findings().filter(|(h, _)| !has(h)) {
             for (r, _) in other.set.findings().filter(|(r, _)| !best.has_finding(r)) {
                 let score_gap = other.criteria[1] - own;

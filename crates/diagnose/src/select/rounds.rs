@@ -23,7 +23,7 @@ const ALONE: usize = 8;
 const SIBLINGS: usize = 2;
 /// Sets of one size among them that the missing force speaks for; of the largest one.
 const SPOKEN: usize = 2;
-/// Share of the best promise below which a set is not fitted, and of its own promise below which it was none.
+/// Share of the best promise, or of what another way has brought beyond a fit, below which a set is not fitted, and of its own promise below which it was none.
 pub(super) const PROMISING: f64 = 0.6;
 const REFUTED: f64 = 0.1;
 /// Share of the most that a set gains by which first fits may be short of what they come to.

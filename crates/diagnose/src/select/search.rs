@@ -101,16 +101,14 @@ pub fn search(
     let (many, all) = (first.len(), problem.power(&nominal));
     let found = Found { nominal: nominal.clone(), best: nominal, tried: Vec::new(), shown: Vec::new(), left: 0.0 };
     let (known, refused) = (first.clone(), Vec::new());
-    let (smaller, goal) = (None, f64::INFINITY);
-    let mut search = Search { problem, hypotheses, many, all, numbers, known, refused, smaller, goal, found };
-    let mut now = search.forward(search.found.nominal.clone(), 0)?;
+    let mut search = Search { problem, hypotheses, many, all, numbers, known, refused, smaller: None, found };
+    let mut now = search.forward(search.found.nominal.clone(), 0, None)?;
     // Where the first step was one of several effects at once that lead nowhere, one with fewer of them may be the way.
     if let Some(smaller) = search.smaller.take().filter(|_| !problem.stage.work.is_spent(Until::Search))
         && !remainder(problem, &now)?.is_noise()
     {
         problem.stage.work.watch.step(&format!("on from {}", names(&smaller.set)));
-        search.goal = criterion(&now, many);
-        let other = search.forward(smaller, 1)?;
+        let other = search.forward(smaller, 1, Some(criterion(&now, many)))?;
         if criterion(&other, many) < criterion(&now, many) {
             now = other;
         }
@@ -144,14 +142,12 @@ struct Search<'a> {
     refused: Vec<String>,
     /// The best of those with fewer effects than what the first round took.
     smaller: Option<Fitted>,
-    /// Criterion that a first set has to come up with, where another way has led to it already.
-    goal: f64,
     found: Found,
 }
 
 impl Search<'_> {
-    /// Adds what is worth its price to a fit, round by round.
-    fn forward(&mut self, mut now: Fitted, first: usize) -> Result<Fitted, DiagnoseError> {
+    /// Adds what is worth its price to a fit, round by round; `goal`: criterion to which another way has led already.
+    fn forward(&mut self, mut now: Fitted, first: usize, mut goal: Option<f64>) -> Result<Fitted, DiagnoseError> {
         let Self { problem, many, all, .. } = *self;
         for round in first..MOST {
             let room = MOST.saturating_sub(now.set.findings().count());
@@ -165,7 +161,8 @@ impl Search<'_> {
             let left = left_of(problem, &now, &bare).rise;
             // What is so little may be the laws' own; what takes nearly all of it is not.
             let is_own = round > 0 && problem.power(&now) < OWN * all;
-            let least = if round == first { PROMISING * (criterion(&now, many) - self.goal).max(0.0) } else { 0.0 };
+            // Only the first sets are held against what is known; what stands beside them later is another question.
+            let least = goal.take().map_or(0.0, |goal| PROMISING * (criterion(&now, many) - goal).max(0.0));
             let bounds = Bounds { round, many, cheapest, all, is_own, least };
             // A nominal model that leaves nothing is still asked what these recordings can show.
             let is_done = round > 0 && left < cheapest;
