@@ -119,7 +119,7 @@ fn drawn(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
         }
         now.span.to = end;
         now = stage.fit_starts(built, &[Segment { columns: None, ..now }], Effort::STARTS).pop()?.segment;
-        let starts = starts_beside(&now, &mut dice)?;
+        let starts = starts_beside(built, &now, &mut dice)?;
         let whole = |start| Segment { start, span: run.span, columns: None, ..now.clone() };
         let cost = |start: &Start| finite(stage.residuals(built, &whole(start.clone())).norm_squared());
         let costs: Vec<f64> = starts.par_iter().map(cost).collect();
@@ -133,7 +133,7 @@ fn drawn(stage: &Stage<'_>, built: &Built, run: &Segment) -> Option<Segment> {
 }
 
 /// A part's start, and others that are as likely by its last linearisation; none where it has none, or nothing that moves.
-fn starts_beside(part: &Segment, dice: &mut ChaCha8Rng) -> Option<Vec<Start>> {
+fn starts_beside(built: &Built, part: &Segment, dice: &mut ChaCha8Rng) -> Option<Vec<Start>> {
     let known = part.columns.as_ref().filter(|known| !known.columns.is_empty())?;
     let spread = DMatrix::from_columns(&known.columns).svd(false, true);
     let axes = spread.v_t?.transpose();
@@ -142,7 +142,7 @@ fn starts_beside(part: &Segment, dice: &mut ChaCha8Rng) -> Option<Vec<Start>> {
     let sizes = spread.singular_values.map(|s| if s > SHOWN * largest { 1.0 / s } else { 0.0 });
     let mut draw = || {
         let by = sizes.map(|size| size * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, dice));
-        part.start.retract(&known.freedoms, (&axes * by).as_slice())
+        part.start.retract(&known.freedoms, (&axes * by).as_slice()).possible(built)
     };
     let mut starts = vec![part.start.clone()];
     starts.extend((0..DRAWN).map(|_| draw()));

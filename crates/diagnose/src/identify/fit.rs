@@ -402,6 +402,10 @@ impl<'a> Problem<'a> {
     /// The runs of another fit followed by a model: with the derivatives that are known, and with its own where those lead astray.
     fn followed(&self, from: &Fitted, with: Fitted) -> Result<Fitted, DiagnoseError> {
         let mut now = with.clone();
+        if with.links.is_empty() {
+            self.follow(&mut now)?;
+            return Ok(now);
+        }
         // One law in the place of its equal: the runs are where it has them.
         let is_replaced = with.set.members.len() == from.set.members.len() && with.set.titles() != from.set.titles();
         if is_replaced {
@@ -503,10 +507,16 @@ impl<'a> Problem<'a> {
         let frame = self.frame(now);
         let exact: Option<Exact> = now.tracks.par_iter().map(|t| frame.exact(t)).collect();
         let exact = exact.ok_or_else(|| self.lost())?;
-        if !reuse || now.links.len() != now.tracks.len() {
-            let links: Option<Vec<Vec<Link>>> = now.tracks.par_iter().map(|t| frame.links(t)).collect();
-            now.links = links.ok_or_else(|| self.lost())?.into_iter().map(Arc::new).collect();
+        let is_known = reuse && now.links.len() == now.tracks.len();
+        if is_known && now.built.model.is_smooth() {
+            return Ok(exact);
         }
+        let links = |(k, track): (usize, &Track)| match now.links.get(k) {
+            Some(known) if is_known => frame.links_where_changed(track, known),
+            _ => frame.links(track),
+        };
+        let links: Option<Vec<Vec<Link>>> = now.tracks.par_iter().enumerate().map(links).collect();
+        now.links = links.ok_or_else(|| self.lost())?.into_iter().map(Arc::new).collect();
         Ok(exact)
     }
 
