@@ -99,6 +99,8 @@ pub fn diagnose_with(
         }
         watch.step("what whole runs leave is far beyond noise: windows");
         let found = diagnose_in_windows(scenario, set, &Work::new(watch, effort))?;
+        let [one, other] = [&found.0, &whole.0].map(|d| 100.0 * merit(d));
+        watch.step(&format!("explained: {one:.1} % in windows, {other:.1} % along whole runs"));
         return Ok(if is_clearly_better(&found.0, &whole.0) { found } else { whole });
     }
     diagnose_in_windows(scenario, set, &Work::new(watch, effort))

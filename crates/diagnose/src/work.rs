@@ -14,9 +14,10 @@ pub trait Watch: Sync {
 impl Watch for () {}
 
 /// What a search may do, in evaluations of the motion of one body: two to four minutes on two cores.
-const USUAL: f64 = 4e8;
-/// What testing two shapes for contact costs, in such evaluations.
+const USUAL: f64 = 4.5e8;
+/// What testing two shapes for contact costs, in such evaluations, and what evaluating a model costs beside its bodies, in halves of one.
 const QUERY: u64 = 2;
+const BESIDE: u64 = 3;
 
 /// Counts of replays, how much may be done, and who watches.
 pub struct Work<'a> {
@@ -107,7 +108,7 @@ impl<'a> Work<'a> {
     pub(crate) fn add(&self, simulated: f64, bodies: usize, work: &sim::Work) {
         self.replays.fetch_add(1, Ordering::Relaxed);
         self.microseconds.fetch_add((simulated * 1e6) as u64, Ordering::Relaxed);
-        let evaluations = work.rate_evaluations * bodies as u64 + QUERY * work.contact_queries;
+        let evaluations = work.rate_evaluations * (2 * bodies as u64 + BESIDE) / 2 + QUERY * work.contact_queries;
         self.evaluations.fetch_add(evaluations, Ordering::Relaxed);
     }
 }
@@ -125,14 +126,14 @@ mod tests {
     #[test]
     fn a_search_ends_before_its_fits_do_and_both_by_counts() {
         let work = Work::new(&(), 1e-6);
-        assert_eq!(work.limit, 400);
+        assert_eq!(work.limit, 450);
         let of =
             |rate_evaluations, contact_queries| sim::Work { rate_evaluations, contact_queries, ..Default::default() };
-        work.add(0.5, 7, &of(40, 0));
+        work.add(0.5, 7, &of(30, 0));
         assert!(!work.is_spent(Until::Search) && !work.was_ended());
-        work.add(0.25, 7, &of(0, 10));
+        work.add(0.25, 7, &of(0, 40));
         assert!(work.is_spent(Until::Search) && !work.is_spent(Until::Fit) && work.was_ended());
-        assert_eq!(work.total(), Total { replays: 2, simulated: 0.75, evaluations: 300 });
+        assert_eq!(work.total(), Total { replays: 2, simulated: 0.75, evaluations: 335 });
         work.add(0.0, 1, &of(101, 0));
         assert!(work.is_spent(Until::Fit));
         let anew = work.anew();

@@ -6,10 +6,10 @@
 
 use super::coarse::{self, Coarse};
 use super::forces::{Force, first_spread, forces};
-use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor, score};
+use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor};
 use super::shown::shown;
 use super::step::{next_sizes, within_bounds};
-use super::track::{Base, Bases, Column, Frame, Interval, Link, Side, Source, Told, Track, coordinates};
+use super::track::{Base, Bases, Column, Frame, Interval, Link, Side, Source, Track, coordinates};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
@@ -103,6 +103,8 @@ const LONGER: usize = 32;
 const SHORTER: [usize; 2] = [2, 4];
 /// Promised fall of −2 log likelihood below which a fit has converged.
 const CONVERGED: f64 = 0.3;
+/// Share of what a look has brought below which a step that does not bring what it promises is not shortened.
+const LITTLE: f64 = 0.01;
 /// Most times that a step is shortened, to the half, an eighth, a sixty-fourth …; what is left of it each time is this to the power of the time.
 const HALVINGS: i32 = 4;
 const NEARER: f64 = 0.5;
@@ -329,14 +331,15 @@ impl<'a> Problem<'a> {
             return self.settle(now, SETTLING, reach.reuse);
         }
         let mut sizes = first_sizes(&now.set);
-        let mut before: Option<Fitted> = None;
+        let (mut before, mut promised): (Option<Fitted>, f64) = (None, f64::INFINITY);
         let mut halved = 0i32;
         for iteration in 0..reach.iterations {
             let steps = if iteration == 0 { STEPS[0] } else { STEPS[1] };
             let most = before.as_ref().map_or(f64::INFINITY, |b| b.score + CONVERGED);
             let here = self.here(&mut now, (&slots, &sizes), (reach.reuse || iteration > 0, steps), most);
             if let Some(last) = before.as_ref().filter(|_| here.is_err()) {
-                if halved >= HALVINGS {
+                // A look that has brought nearly all that it can is not worth a shorter step.
+                if halved >= HALVINGS || reach.reuse && promised < LITTLE * (from.score - last.score) {
                     return Ok(Fitted { converged: false, ..last.clone() });
                 }
                 halved += 1;
@@ -351,7 +354,7 @@ impl<'a> Problem<'a> {
             now.spread = here.spread.clone();
             now.covariance = found.covariance.clone();
             sizes = next_sizes(&now.set, &slots, &found.covariance);
-            let promised = score + now.datum - found.score;
+            promised = score + now.datum - found.score;
             now.converged = promised < CONVERGED;
             if now.converged || iteration + 1 == reach.iterations {
                 break;
@@ -397,58 +400,6 @@ impl<'a> Problem<'a> {
         let shares = (1..=HALVINGS).map(|k| NEARER.powi(k));
         let mut nearer = shares.map(|share| set.a_share_of_the_way(&from.set, share));
         nearer.find(|near| self.plant.build(&near.effects()).is_ok()).ok_or(error)
-    }
-
-    /// The runs of another fit followed by a model: with the derivatives that are known, and with its own where those lead astray.
-    fn followed(&self, from: &Fitted, with: Fitted) -> Result<Fitted, DiagnoseError> {
-        let mut now = with.clone();
-        if with.links.is_empty() {
-            self.follow(&mut now)?;
-            return Ok(now);
-        }
-        // One law in the place of its equal: the runs are where it has them.
-        let is_replaced = with.set.members.len() == from.set.members.len() && with.set.titles() != from.set.titles();
-        if is_replaced {
-            let made = self.linearise(&mut now, &[], true);
-            if made.is_ok_and(|made| self.score_of(&made, &now) < from.score + THERE * from.count as f64) {
-                return Ok(now);
-            }
-        }
-        let is_near = self.follow(&mut now).and_then(|()| {
-            let made = self.linearise(&mut now, &[], true)?;
-            Ok(self.score_of(&made, &now) < from.score + ASTRAY * from.count as f64)
-        });
-        if is_near.unwrap_or(false) {
-            return Ok(now);
-        }
-        now = Fitted { links: Vec::new(), ..with };
-        self.follow(&mut now)?;
-        Ok(now)
-    }
-
-    /// −2 log likelihood of a fit as it stands.
-    fn score_of(&self, made: &Made, of: &Fitted) -> f64 {
-        score(&made.chains(&[]), &of.spread) + of.set.prior_cost() - of.datum
-    }
-
-    /// Lets the runs be followed by another model than that which their states are of: what pushed them, pushes it no more or more.
-    fn follow(&self, now: &mut Fitted) -> Result<(), DiagnoseError> {
-        let mut tracks = now.tracks.clone();
-        let frame = self.frame(now);
-        let channels = self.channels_of(&now.tracks);
-        let usual = now.spread.usual_force();
-        let follow = |(k, track): (usize, &mut Track)| {
-            let known = now.links.get(k).map(|links| links.as_slice());
-            let of_interval =
-                |own: &Vec<u16>| DVector::from_iterator(own.len(), own.iter().map(|c| now.spread.noise[*c as usize]));
-            let factors: Vec<DVector<f64>> = channels[k].iter().map(of_interval).collect();
-            let told = Told { start: &now.first, force: &usual, factors: &factors };
-            frame.follow(track, told, known).map(Arc::new)
-        };
-        let links: Option<Vec<Arc<Vec<Link>>>> = tracks.par_iter_mut().enumerate().map(follow).collect();
-        now.links = links.ok_or_else(|| self.lost())?;
-        now.tracks = tracks;
-        Ok(())
     }
 
     /// A share of the way from one fit to another one of the same set.
@@ -580,10 +531,6 @@ fn is_joined(run: &Linear) -> bool {
     let step = |(side, next): (&Side, &Link)| (&next.s * side.d.column(side.d.ncols() - 1)).amax() < JOINED;
     run.sides.iter().zip(&run.links[1..]).all(step)
 }
-
-/// Rise of −2 log likelihood by residual with which derivatives have led astray, and up to which a model is where the runs are already.
-const ASTRAY: f64 = 0.1;
-const THERE: f64 = 1e-3;
 
 /// All runs made linear.
 pub struct Made {

@@ -4,9 +4,11 @@
 //! continuity, and an unknown force on every coordinate that may have any size its variance allows: with none of it the chain is one free run, with
 //! much of it each interval stands for itself. [`chain`] eliminates states and forces along the run exactly, [`track`] makes a run linear.
 
+mod answer;
 pub mod chain;
 pub mod coarse;
 pub mod fit;
+mod follow;
 pub mod forces;
 mod halve;
 pub mod marginal;

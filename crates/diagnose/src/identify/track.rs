@@ -164,7 +164,7 @@ impl Frame<'_> {
     }
 
     /// The same as derivatives are taken: models in which nothing touches at a coarser clock and few events, those without corners by the midpoint rule.
-    fn glance(&self, built: &Built, run: usize, interval: &Interval, start: &Start) -> Option<Base> {
+    pub(super) fn glance(&self, built: &Built, run: usize, interval: &Interval, start: &Start) -> Option<Base> {
         if !may_follow(built) {
             return self.shoot(built, run, interval, start);
         }
@@ -390,36 +390,6 @@ impl Frame<'_> {
         track.intervals.par_iter().map(|interval| self.link(track.run, interval)).collect()
     }
 
-    /// The same where known ones are no more what they were: a joint that holds by now, or no more, answers otherwise.
-    pub fn links_where_changed(&self, track: &Track, known: &[Link]) -> Option<Vec<Link>> {
-        let of = |(interval, link): (&Interval, &Link)| match self.answers_as(track.run, interval, link)? {
-            true => Some(link.clone()),
-            false => self.link(track.run, interval),
-        };
-        track.intervals.par_iter().zip(known).map(of).collect()
-    }
-
-    /// Whether an interval answers to all its coordinates and forces at once, each moved by as much as shows alike, as derivatives say.
-    fn answers_as(&self, run: usize, interval: &Interval, link: &Link) -> Option<bool> {
-        let sizes = |columns: &DMatrix<f64>, own: &dyn Fn(usize) -> f64| -> DVector<f64> {
-            let shown: Vec<f64> = columns.column_iter().enumerate().map(|(k, c)| c.norm() * own(k)).collect();
-            let most = shown.iter().copied().fold(0.0, f64::max);
-            let by = |k: usize| own(k) * (most / shown[k]).clamp(1.0, STRONGER);
-            DVector::from_iterator(shown.len(), (0..shown.len()).map(by))
-        };
-        let state = sizes(&link.s, &|k| self.freedoms[k].first_step());
-        let force = sizes(&link.f, &|j| self.forces[j].size);
-        let moved = Interval { force: &interval.force + &force, ..interval.clone() };
-        let (r, end) = self.glance(self.built, run, interval, &interval.start)?;
-        let start = interval.start.retract(self.freedoms, state.as_slice());
-        let (q, e) = self.glance(self.built, run, &moved, &start)?;
-        let read = told(may_follow(self.built), interval, q - r);
-        let ends = &link.s * DVector::from_vec(e.difference(&end, self.freedoms));
-        let (read_by, ends_by) = (&link.s * &state + &link.f * &force, &link.s * (&link.a * &state + &link.b * &force));
-        let far = (&read - &read_by).norm_squared() + (&ends - &ends_by).norm_squared();
-        Some(far < ANSWERS.powi(2) * (read_by.norm_squared() + ends_by.norm_squared()))
-    }
-
     /// The same of a run some intervals of which are new: of the others they are known.
     pub fn links_again(&self, (before, known): (&Track, &[Link]), track: &Track) -> Option<Vec<Link>> {
         let of = |interval: &Interval| {
@@ -546,9 +516,6 @@ const ASIDE: f64 = 0.3;
 const UNHEARD: f64 = 0.02;
 /// Two instants closer than this are one, s.
 const SAME: f64 = 1e-9;
-/// Share of an answer that may be another than derivatives say, and how many times its first step a coordinate is moved at most.
-const ANSWERS: f64 = 0.05;
-const STRONGER: f64 = 1e3;
 /// Passes over an interval, and over the first, whose state is only guessed.
 const PASSES: usize = 2;
 const FIRST: usize = 3;
@@ -572,7 +539,7 @@ struct Passed {
 }
 
 /// Values of all scalars of an interval from those that a model was read at.
-fn told(is_glanced: bool, interval: &Interval, read: DVector<f64>) -> DVector<f64> {
+pub(super) fn told(is_glanced: bool, interval: &Interval, read: DVector<f64>) -> DVector<f64> {
     if is_glanced { interval.few.expanded(&read) } else { read }
 }
 

@@ -21,6 +21,7 @@ use crate::parsimony::plainer;
 use crate::screen::Score;
 use crate::standing::told;
 use crate::work::Until;
+use std::collections::BTreeSet;
 
 /// What a search has found.
 #[derive(Clone, Debug)]
@@ -101,7 +102,8 @@ pub fn search(
     let (many, all) = (first.len(), problem.power(&nominal));
     let found = Found { nominal: nominal.clone(), best: nominal, tried: Vec::new(), shown: Vec::new(), left: 0.0 };
     let (known, refused) = (first.clone(), Vec::new());
-    let mut search = Search { problem, hypotheses, many, all, numbers, known, refused, smaller: None, found };
+    let ways = Vec::new();
+    let mut search = Search { problem, hypotheses, many, all, numbers, known, refused, ways, smaller: None, found };
     let mut now = search.forward(search.found.nominal.clone(), 0, None)?;
     // Where the first step was one of several effects at once that lead nowhere, one with fewer of them may be the way.
     if let Some(smaller) = search.smaller.take().filter(|_| !problem.stage.work.is_spent(Until::Search))
@@ -140,6 +142,8 @@ struct Search<'a> {
     /// Hypotheses of the last round, and titles of what is asked no more.
     known: Vec<Hypothesis>,
     refused: Vec<String>,
+    /// Titles of what was taken, round by round of all ways.
+    ways: Vec<BTreeSet<String>>,
     /// The best of those with fewer effects than what the first round took.
     smaller: Option<Fitted>,
     found: Found,
@@ -182,6 +186,12 @@ impl Search<'_> {
             now = alone;
             self.refused.extend(gone);
             problem.stage.work.watch.step(&format!("{}: −2 log L {:.1}", names(&now.set), now.score));
+            let taken: BTreeSet<String> = now.set.titles().into_iter().collect();
+            // Another way that leads to the same set goes on as the first did.
+            if self.ways.contains(&taken) {
+                break;
+            }
+            self.ways.push(taken);
         }
         Ok(now)
     }
