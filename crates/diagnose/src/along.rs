@@ -10,6 +10,7 @@ use crate::fit::{EffectSet, Fit};
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach};
 use crate::linear::{Segment, Stage, Steps};
+use crate::lost;
 use crate::pace::{self, Discretisation};
 use crate::plant::Plant;
 use crate::replay::Span;
@@ -111,7 +112,8 @@ pub(crate) fn at_suiting_steps(
     let best = &course.found.best;
     let windows = windows_of(&problem(stage, plant, own, Role::Fit), best, window);
     let judged = as_fit(stage, best, windows);
-    if best.set.members.is_empty() || judged.rms() > pace::NEAR {
+    // What rough steps lose is in it: a run that is followed may owe them all that is left.
+    if best.set.members.is_empty() || judged.rms() >= lost::NEAR {
         return Ok((course, chosen));
     }
     let found = pace::suited(stage, (&judged.built, &judged.segments), judged.count);
