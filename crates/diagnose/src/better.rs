@@ -10,8 +10,8 @@ pub(crate) fn is_near_noise(diagnosis: &Diagnosis) -> bool {
     merit(diagnosis) >= 1.0 || has_effects && (diagnosis.error.windowed.after < NEAR_NOISE || is_next_to_all)
 }
 
-/// Whether a diagnosis explains more than another one by more than the runs tell: the other's share lies below its interval, or both are small and their
-/// intervals lie apart.
+/// Whether a diagnosis explains more than another one by more than the runs tell: the other's share lies below its interval and, where a search would be
+/// content with the other, so does all of the other's.
 pub(crate) fn is_clearly_better(one: &Diagnosis, other: &Diagnosis) -> bool {
     let interval = |d: &Diagnosis| d.explained_share.as_ref().map_or([0.0; 2], |e| e.interval);
     let overlaps = interval(one)[0] <= interval(other)[1];

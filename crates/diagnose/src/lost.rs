@@ -142,7 +142,7 @@ fn starts_beside(built: &Built, part: &Segment, dice: &mut ChaCha8Rng) -> Option
     let sizes = spread.singular_values.map(|s| if s > SHOWN * largest { 1.0 / s } else { 0.0 });
     let mut draw = || {
         let by = sizes.map(|size| size * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, dice));
-        part.start.retract(&known.freedoms, (&axes * by).as_slice()).possible(built)
+        part.start.retract_within(built, &known.freedoms, (&axes * by).as_slice())
     };
     let mut starts = vec![part.start.clone()];
     starts.extend((0..DRAWN).map(|_| draw()));

@@ -186,7 +186,7 @@ impl Stage<'_> {
         let mut damping = if damping > LEAST_DAMPING { 0.1 * damping } else { 0.0 };
         for _ in 0..DAMPINGS {
             let step = if damping > 0.0 { linear.damped(damping).start_step(&[]) } else { linear.start_step(&[]) };
-            let moved = Segment { start: segment.start.retract(known, &step).possible(built), ..segment.clone() };
+            let moved = Segment { start: segment.start.retract_within(built, known, &step), ..segment.clone() };
             let r = self.residuals(built, &moved);
             if r.norm_squared() < cost {
                 return Some((moved, r, damping));
@@ -254,7 +254,7 @@ impl Stage<'_> {
             let mut best: Option<(Segment, DVector<f64>)> = None;
             for share in [1.0, 0.4, 0.0] {
                 let by: Vec<f64> = step.iter().map(|d| d * share).collect();
-                let start = segment.start.retract(&linear.freedoms, &by).possible(built);
+                let start = segment.start.retract_within(built, &linear.freedoms, &by);
                 let moved = Segment { start, ..segment.clone() };
                 let r = self.residuals(built, &moved);
                 let is_fair = finite(r.norm_squared()) <= linear.cost + NEXT_TO_NOTHING;

@@ -283,8 +283,13 @@ impl Start {
         start
     }
 
+    /// The same moved along its coordinates as far as a model can be there.
+    pub fn retract_within(&self, built: &Built, freedoms: &[Freedom], by: &[f64]) -> Self {
+        self.retract(freedoms, by).possible(built)
+    }
+
     /// The same with the memory of effects no larger than it comes to by itself: a linear step knows no bounds.
-    pub fn possible(mut self, built: &Built) -> Self {
+    fn possible(mut self, built: &Built) -> Self {
         for slot in sim::memory_layout(&built.model) {
             if let (Some(own), Some(largest)) = (self.memory.get_mut(slot.offset), slot.largest) {
                 *own = own.clamp(-largest, largest);

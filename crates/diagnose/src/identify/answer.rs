@@ -3,19 +3,24 @@
 use super::track::{Frame, Interval, Link, Track, may_follow, told};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Share of an answer that may be another than derivatives say, and how many times its first step a coordinate is moved at most.
 const ANSWERS: f64 = 0.05;
 const STRONGER: f64 = 1e3;
 
 impl Frame<'_> {
-    /// The same where known ones are no more what they were: a joint that holds by now, or no more, answers otherwise.
-    pub fn links_where_changed(&self, track: &Track, known: &[Link]) -> Option<Vec<Link>> {
-        let of = |(interval, link): (&Interval, &Link)| {
-            let is_known = self.answers_as(track.run, interval, link).unwrap_or(false);
-            if is_known { Some(link.clone()) } else { self.link(track.run, interval) }
-        };
-        track.intervals.par_iter().zip(known).map(of).collect()
+    /// Derivatives of all intervals of a run, taken anew where known ones are no more what they were: a joint that holds by now, or no more, answers otherwise.
+    pub(super) fn links_where_changed(&self, track: &Track, known: &Arc<Vec<Link>>) -> Option<Arc<Vec<Link>>> {
+        let is_known =
+            |(interval, link): (&Interval, &Link)| self.answers_as(track.run, interval, link).unwrap_or(false);
+        let is_known: Vec<bool> = track.intervals.par_iter().zip(known.as_slice()).map(is_known).collect();
+        if !is_known.contains(&false) {
+            return Some(Arc::clone(known));
+        }
+        let of =
+            |i: usize| if is_known[i] { Some(known[i].clone()) } else { self.link(track.run, &track.intervals[i]) };
+        (0..is_known.len()).into_par_iter().map(of).collect::<Option<_>>().map(Arc::new)
     }
 
     /// Whether an interval answers to all its coordinates and forces at once, each moved by as much as shows alike, as derivatives say.
@@ -97,14 +102,14 @@ mod tests {
         let track = Track::cut((&stage, &coarse), (&free, forces.len()), 0, 8).expect("it is sampled");
         let freedoms = coordinates(&free, &track.intervals[0].start);
         let of = |built| Frame { stage: &stage, coarse: &coarse, built, freedoms: &freedoms, forces: &forces };
-        let known = of(&free).links(&track).expect("it swings");
+        let known = Arc::new(of(&free).links(&track).expect("it swings"));
         let same = of(&free).links_where_changed(&track, &known).expect("it swings");
-        assert!(known.iter().zip(&same).all(|(a, b)| a.a == b.a && a.s == b.s), "nothing has changed");
+        assert!(known.iter().zip(same.iter()).all(|(a, b)| a.a == b.a && a.s == b.s), "nothing has changed");
         let (with, without) = (of(&held), of(&free));
         let track = with.carried(&track, without.built);
         let before = work.total().replays;
         let anew = with.links_where_changed(&track, &known).expect("it holds and slides");
-        let changed: Vec<bool> = known.iter().zip(&anew).map(|(a, b)| a.a != b.a).collect();
+        let changed: Vec<bool> = known.iter().zip(anew.iter()).map(|(a, b)| a.a != b.a).collect();
         assert_eq!(changed, [true, true, true, true, false, false, false, false]);
         let rate = freedoms.iter().position(crate::start::Freedom::is_rate).expect("the hinge turns");
         assert!(known[1].a[(rate, rate)] > 0.9 && anew[1].a[(rate, rate)].abs() < 0.3);

@@ -466,10 +466,10 @@ impl<'a> Problem<'a> {
         }
         let links = |(k, track): (usize, &Track)| match now.links.get(k) {
             Some(known) if is_known => frame.links_where_changed(track, known),
-            _ => frame.links(track),
+            _ => frame.links(track).map(Arc::new),
         };
-        let links: Option<Vec<Vec<Link>>> = now.tracks.par_iter().enumerate().map(links).collect();
-        now.links = links.ok_or_else(|| self.lost())?.into_iter().map(Arc::new).collect();
+        let links: Option<Vec<Arc<Vec<Link>>>> = now.tracks.par_iter().enumerate().map(links).collect();
+        now.links = links.ok_or_else(|| self.lost())?;
         Ok(exact)
     }
 

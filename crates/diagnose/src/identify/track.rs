@@ -155,7 +155,7 @@ impl Track {
 impl Frame<'_> {
     /// A state moved along its coordinates, as far as the model can be there.
     fn retract(&self, state: &Start, by: &[f64]) -> Start {
-        state.retract(self.freedoms, by).possible(self.built)
+        state.retract_within(self.built, self.freedoms, by)
     }
 
     fn shoot(&self, built: &Built, run: usize, interval: &Interval, start: &Start) -> Option<Base> {
