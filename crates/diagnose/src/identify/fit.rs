@@ -336,9 +336,7 @@ impl<'a> Problem<'a> {
         for iteration in 0..reach.iterations {
             let steps = if iteration == 0 { STEPS[0] } else { STEPS[1] };
             let most = before.as_ref().map_or(f64::INFINITY, |b| b.score + CONVERGED);
-            // To the end a law that holds and slips has derivatives of its own at every step.
-            let reuse = reach.reuse || iteration > 0 && (halved > 0 || now.built.model.is_smooth());
-            let here = self.here(&mut now, (&slots, &sizes), (reuse, steps), most);
+            let here = self.here(&mut now, (&slots, &sizes), (reach.reuse || iteration > 0, steps), most);
             if let Some(last) = before.as_ref().filter(|_| here.is_err()) {
                 // A look that has brought nearly all that it can is not worth a shorter step.
                 if halved >= HALVINGS || reach.reuse && promised < LITTLE * (from.score - last.score) {
