@@ -134,15 +134,19 @@ impl EffectSet {
         set
     }
 
-    /// The set with all free that its members hold in reserve, where it leads astray; none where they hold nothing.
-    pub fn released(&self) -> Option<Self> {
-        let mut free = self.clone();
-        for (at, member) in free.members.iter_mut().enumerate() {
-            let Some(released) = member.0.relaxed_afar(&member.1) else { continue };
-            free.held.retain(|(m, k)| *m != at || released.0.held.contains(k));
-            *member = released;
+    /// The set with all free that its members hold in reserve, where it leads astray, from each end of that; none where they hold nothing.
+    pub fn released(&self) -> Vec<Self> {
+        if self.members.iter().all(|(h, _)| h.reserve.is_empty()) {
+            return Vec::new();
         }
-        self.members.iter().any(|(h, _)| !h.reserve.is_empty()).then_some(free)
+        let mut free = vec![self.clone(); 2];
+        for (at, (h, x)) in self.members.iter().enumerate() {
+            for (set, released) in free.iter_mut().zip(h.relaxed_afar(x).into_iter().flatten()) {
+                set.held.retain(|(m, k)| *m != at || released.0.held.contains(k));
+                set.members[at] = released;
+            }
+        }
+        free
     }
 
     /// The set with every number held.
@@ -572,13 +576,15 @@ mod tests {
         let of = |name: &str| all.iter().find(|h| h.name == name).expect("it is in the library");
         let (dry, viscous) = (of("joint-coulomb-friction"), of("joint-viscous-friction"));
         let plain = EffectSet::default().with(viscous, &viscous.neutral());
-        assert!(plain.released().is_none());
+        assert!(plain.released().is_empty());
         let set = plain.with(dry, &dry.neutral());
         assert_eq!(set.slots(), [(0, 0), (1, 0)], "its level alone is fitted");
-        let free = set.released().expect("it has a reach and a rate in reserve");
-        assert_eq!(free.slots(), [(0, 0), (1, 0), (1, 1), (1, 2)]);
-        let [near, afar] =
-            [dry.relaxed(&dry.neutral()), dry.relaxed_afar(&dry.neutral())].map(|r| r.expect("so it has").1[2]);
-        assert!(0.0 < near && near < afar && free.members[1].1[2] == afar, "smoothest where it creeps fastest");
+        let free = set.released();
+        assert_eq!(free.len(), 2, "it has a reach and a rate in reserve, which begin at either end");
+        assert!(free.iter().all(|set| set.slots() == [(0, 0), (1, 0), (1, 1), (1, 2)]));
+        let near = dry.relaxed(&dry.neutral()).expect("so it has").1;
+        let [smooth, stiff] = [0, 1].map(|way| &free[way].members[1].1);
+        assert!(0.0 < near[2] && near[2] < smooth[2] && stiff[2] < smooth[2], "smoothest where it creeps fastest");
+        assert!(stiff[1] < smooth[1], "stiffest where it yields least");
     }
 }

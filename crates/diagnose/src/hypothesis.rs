@@ -99,9 +99,9 @@ impl Hypothesis {
         self.released(x, |begin| begin.near)
     }
 
-    /// The same beside `x` that leads astray.
-    pub fn relaxed_afar(&self, x: &[f64]) -> Option<(Self, Vec<f64>)> {
-        self.released(x, |begin| begin.afar)
+    /// The same beside `x` that leads astray, from each end of what there is.
+    pub fn relaxed_afar(&self, x: &[f64]) -> Option<[(Self, Vec<f64>); 2]> {
+        Some([self.released(x, |begin| begin.afar[0])?, self.released(x, |begin| begin.afar[1])?])
     }
 
     fn released(&self, x: &[f64], at: fn(&Begin) -> f64) -> Option<(Self, Vec<f64>)> {

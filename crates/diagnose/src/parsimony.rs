@@ -88,13 +88,17 @@ pub(crate) fn plainer(
     let of = |other: Alternative| {
         let is_here = |p: &&Hypothesis| p.name == other.name && (p.place == h.place || other.is_at_contact);
         let plain = known.iter().find(is_here)?;
-        // What a law has had to free its plainer form has free too.
-        let free = plain.relaxed(&other.coordinates).filter(|_| h.reserve.is_empty());
-        let plain = free.map_or_else(|| plain.clone(), |(free, _)| free);
+        // What a law has had to free its plainer form has free too, and needs it elsewhere where it was free to do with its own numbers what that does.
+        let free = plain.relaxed_afar(&other.coordinates).filter(|_| h.reserve.is_empty());
+        let (plain, afar) = match free {
+            Some([smooth, stiff]) => (smooth.0, vec![smooth.1, stiff.1]),
+            None => (plain.clone(), Vec::new()),
+        };
         let held = [&plain.held[..], &other.held[..]].concat();
-        Some((Hypothesis { held, ..plain }, other.coordinates))
+        let plain = Hypothesis { held, ..plain };
+        Some(std::iter::once(other.coordinates).chain(afar).map(move |x| (plain.clone(), x)))
     };
-    others.into_iter().filter_map(of).filter(|(plain, _)| !set.has_finding(plain)).collect()
+    others.into_iter().filter_map(of).flatten().filter(|(plain, _)| !set.has_finding(plain)).collect()
 }
 
 /// Puts a plainer law in the place of one that has grown into it, and a likelier one in that of its equal.
@@ -110,12 +114,15 @@ pub(crate) fn simplify(
             let is_far = |near: &Fit| near.rms() > PLAINER * now.judge().rms();
             let of = |set: &EffectSet, effort| fit(stage, plant, set.clone(), now.judge().segments.clone(), effort);
             let near = of(&set, GLANCE)?;
-            let released = is_far(&near).then(|| set.released()).flatten();
+            let released = if is_far(&near) { set.released() } else { Vec::new() };
             // What a plainer law cannot do without it may do with what it holds in reserve.
-            let near = released.map_or(Ok(near), |free| of(&free, LOOK))?;
-            if is_far(&near) {
-                continue;
+            let mut all = vec![near];
+            for free in &released {
+                all.extend(of(free, LOOK).ok());
             }
+            let Some(near) = all.into_iter().min_by(|a, b| a.rms().total_cmp(&b.rms())).filter(|n| !is_far(n)) else {
+                continue;
+            };
             let tried = now.refit(stage, plant, near.set, LOOK)?;
             let costs = criterion(tried.judge()) - criterion(now.judge());
             stage.work.watch.step(&format!("{} instead costs {costs:.1}", plain.title()));

@@ -3,7 +3,8 @@
 //! How long an unknown force stays what it is was chosen by what the nominal model misses. What a nearly right law leaves comes and goes elsewhere, in
 //! short bursts, and intervals that are not followed cost more than all that it explains brings.
 
-use super::search::{LOOK, criterion, to_the_end};
+use super::search::{LOOK, criterion};
+use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem};
 use crate::standing::told;
 
@@ -48,19 +49,26 @@ fn closer(problem: &Problem<'_>, before: &Fitted, now: &Fitted) -> Option<(Fitte
     (closer.score < now.score).then_some((same, closer))
 }
 
-/// A fit whose laws have what they hold in reserve, where it is better so.
+/// A fit whose laws have what they hold in reserve, where it is better so: from next to what they are without, and from each end of what there is.
 pub(super) fn relaxed(problem: &Problem<'_>, mut now: Fitted, many: usize) -> Fitted {
     let all: Vec<String> = now.set.findings().map(|(h, _)| h.title()).collect();
     for title in all {
         let Some(at) = now.set.members.iter().position(|(h, _)| h.title() == title) else { continue };
         let (h, x) = &now.set.members[at];
-        let Some((free, start)) = h.relaxed(x) else { continue };
-        let Ok(tried) = problem.fit(&now, now.set.without(at).with(&free, &start), LOOK) else { continue };
-        let gain = criterion(&tried, many) - criterion(&now, many);
-        let with = tried.set.members.last().map_or_else(String::new, |(h, x)| told(h, x));
-        problem.stage.work.watch.step(&format!("    {title} with {with}: criterion {gain:.1}"));
-        if gain < 0.0 {
-            now = to_the_end(problem, tried);
+        let begins = h.relaxed(x).into_iter().chain(h.relaxed_afar(x).into_iter().flatten());
+        let look = |(free, start): (Hypothesis, Vec<f64>)| {
+            let set = now.set.without(at).with(&free, &start);
+            // States and forces are those of another law: they come to what this one says before its numbers move.
+            let begun = problem.fit(&now, set.frozen(), LOOK).ok()?;
+            let tried = problem.fit(&begun, set, LOOK).ok()?;
+            let gain = criterion(&tried, many) - criterion(&now, many);
+            let with = tried.set.members.last().map_or_else(String::new, |(h, x)| told(h, x));
+            problem.stage.work.watch.step(&format!("    {title} with {with}: criterion {gain:.1}"));
+            Some((gain, tried))
+        };
+        let best = begins.filter_map(look).min_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((_, free)) = best.filter(|(gain, _)| *gain < 0.0) {
+            now = free;
         }
     }
     now

@@ -1,6 +1,6 @@
 //! One round of a search: the sets that promise most, fitted in full simulation, and the best of them.
 
-use super::detail::but_for_a_detail;
+use super::detail::{but_for_a_detail, relaxed};
 use super::enough::Enough;
 use super::left::{Left, Smaller};
 use super::pool::Pool;
@@ -23,7 +23,8 @@ const ALONE: usize = 8;
 const SIBLINGS: usize = 2;
 /// Sets of one size among them that the missing force speaks for; of the largest one.
 const SPOKEN: usize = 2;
-/// Share of the best promise, or of what another way has brought beyond a fit, below which a set is not fitted, and of its own promise below which it was none.
+/// Share of the best promise, or of what another way has brought beyond a fit, below which a set is not fitted, of its own promise below which it may do
+/// more with what it holds in reserve, and below which it was none.
 pub(super) const PROMISING: f64 = 0.6;
 const REFUTED: f64 = 0.1;
 /// Share of the most that a set gains by which first fits may be short of what they come to.
@@ -111,7 +112,7 @@ pub(super) fn fit_sets(
 fn fit_first(
     problem: &Problem<'_>,
     now: &Fitted,
-    Proposal { members, spread, .. }: &Proposal,
+    Proposal { members, spread, score }: &Proposal,
     pool: &Pool,
     (many, here): (usize, f64),
 ) -> Result<(Option<Fitted>, Fitted), DiagnoseError> {
@@ -120,12 +121,19 @@ fn fit_first(
     let look =
         |set: EffectSet| problem.fit(&begun, set, LOOK).map(|fit| but_for_a_detail(problem, now, fit, (many, here)));
     let first = look(set.clone())?;
-    if criterion(&first.1, many) < criterion(first.0.as_ref().unwrap_or(now), many) {
+    let gain = |(same, fit): &(Option<Fitted>, Fitted)| same.as_ref().unwrap_or(now).score - fit.score;
+    let is_better = criterion(&first.1, many) < criterion(first.0.as_ref().unwrap_or(now), many);
+    if is_better && gain(&first) >= PROMISING * (now.score - score) {
         return Ok(first);
     }
     // A law that leads astray may do so for what it holds in reserve.
-    let free = set.released().and_then(|free| look(free).ok());
-    Ok(free.filter(|free| criterion(&free.1, many) < criterion(&first.1, many)).unwrap_or(first))
+    let settled = |free: EffectSet| {
+        let begun = problem.fit(&begun, free.frozen(), LOOK)?;
+        problem.fit(&begun, free, LOOK).map(|fit| but_for_a_detail(problem, now, fit, (many, here)))
+    };
+    let free = set.released().into_iter().filter_map(|free| settled(free).ok());
+    let by_criterion = |a: &(_, Fitted), b: &(_, Fitted)| criterion(&a.1, many).total_cmp(&criterion(&b.1, many));
+    Ok(free.fold(first, |best, free| if by_criterion(&free, &best).is_lt() { free } else { best }))
 }
 
 /// What is fitted next: the first of the proposals that was not yet, and of laws alone where nothing was enough.
@@ -153,17 +161,25 @@ fn best_of(
     (before, many): (f64, usize),
 ) -> Option<(Fitted, Option<Fitted>)> {
     let gain = |fit: &Fitted| before - criterion(fit, many);
-    let most = worthy.iter().map(|(_, fit)| gain(fit)).reduce(f64::max)?;
-    let close = worthy.iter().filter(|(_, fit)| gain(fit) >= most - CLOSE * most.abs());
-    let to_the_end = |(index, fit): &(usize, Fitted)| {
-        let fit = to_the_end(problem, fit.clone());
-        let of: &mut Tried = &mut tried[*index];
+    let close = |all: Vec<(usize, Fitted)>| -> Vec<(usize, Fitted)> {
+        let most = all.iter().map(|(_, fit)| gain(fit)).fold(f64::NEG_INFINITY, f64::max);
+        all.into_iter().filter(|(_, fit)| gain(fit) >= most - CLOSE * most.abs()).collect()
+    };
+    // What leaves more than noise is not followed to the end of what it does without what it holds in reserve.
+    let free = |(index, fit): (usize, Fitted)| {
+        let is_noise = remainder(problem, &fit).is_ok_and(|left| left.is_noise());
+        (index, if is_noise { fit } else { relaxed(problem, fit, many) })
+    };
+    let to_the_end = |(index, fit): (usize, Fitted)| {
+        let fit = to_the_end(problem, fit);
+        let of: &mut Tried = &mut tried[index];
         of.set.clone_from(&fit.set);
         (of.scores[1], of.criteria[1]) = (fit.score, criterion(&fit, many));
         fit
     };
     let by_criterion = |a: &Fitted, b: &Fitted| criterion(a, many).total_cmp(&criterion(b, many));
-    let best = close.map(to_the_end).min_by(by_criterion)?;
+    let freed = close(worthy.clone()).into_iter().map(free).collect();
+    let best = close(freed).into_iter().map(to_the_end).min_by(by_criterion)?;
     let effects = |fit: &Fitted| fit.set.findings().count();
     let smaller = worthy.into_iter().map(|(_, fit)| fit).filter(|fit| effects(fit) < effects(&best));
     let smaller = smaller.min_by(by_criterion);

@@ -118,7 +118,10 @@ pub fn search(
     let Search { mut found, mut known, .. } = search;
     // A joint that yields by now is no more one that may begin to, and yet that is what a joint with play becomes.
     known.extend(first);
-    let plain = simplified(problem, relaxed(problem, now, many), &known, (many, all))?;
+    let before = now.score;
+    let free = relaxed(problem, now, many);
+    let free = if free.score < before { to_the_end(problem, free) } else { free };
+    let plain = simplified(problem, free, &known, (many, all))?;
     let titles = plain.set.titles();
     found.best = exchanged(problem, plain, (&found.tried, &found.shown), many)?;
     if found.best.set.titles() != titles {

@@ -233,8 +233,8 @@ pub struct Candidate {
 pub struct Begin {
     /// Where the law is nearly right without.
     pub near: f64,
-    /// Where it leads astray without: where it is smoothest.
-    pub afar: f64,
+    /// Where it leads astray without: where it is smoothest, and where it is stiffest. One valley does not lead to the other.
+    pub afar: [f64; 2],
 }
 
 impl Candidate {

@@ -23,10 +23,11 @@ const Z_0: Parameter =
 const V_C: Parameter =
     zero("v_c", AT_LEAST_ZERO, RATE, "rate below which the joint creeps under less than the level, in its share of it")
         .optional();
-/// Rate from which creep is looked for, and the largest.
-const CREEP: Begin = Begin { near: 1e-3, afar: 0.1 };
+/// Rate from which creep is looked for, and the largest. What other simulators have for friction that holds is stiff: it yields by a damper, not by a spring.
+const CREEP: Begin = Begin { near: 1e-3, afar: [0.1, 3e-3] };
 const FASTEST: f64 = 0.3;
-/// Between which a reach is looked for.
+/// Reach of friction that is next to rigid, and between which a reach is looked for.
+const STIFF: f64 = 1e-5;
 const REACHES: [f64; 2] = [1e-6, 0.1];
 
 /// Dry friction of an entry.
@@ -129,7 +130,7 @@ fn held(mut coordinates: Vec<Coordinate>, joint: &JointFact) -> Candidate {
     let own = coordinates.len();
     coordinates.push(Coordinate::log(Z_0.name, REACH, REACHES));
     coordinates.push(Coordinate::free(V_C.name, 0.0).within([0.0, FASTEST]));
-    let reach = Begin { near: REACH.ln(), afar: REACH.ln() };
+    let reach = Begin { near: REACH.ln(), afar: [REACH.ln(), STIFF.ln()] };
     Candidate::new(joint.place(), coordinates).in_reserve(own, reach).in_reserve(own + 1, CREEP)
 }
 
