@@ -127,11 +127,7 @@ fn fit_first(
         return Ok(first);
     }
     // A law that leads astray may do so for what it holds in reserve.
-    let settled = |free: EffectSet| {
-        let begun = problem.fit(&begun, free.frozen(), LOOK)?;
-        problem.fit(&begun, free, LOOK).map(|fit| but_for_a_detail(problem, now, fit, (many, here)))
-    };
-    let free = set.released().into_iter().filter_map(|free| settled(free).ok());
+    let free = set.released().into_iter().filter_map(|free| look(free).ok());
     let by_criterion = |a: &(_, Fitted), b: &(_, Fitted)| criterion(&a.1, many).total_cmp(&criterion(&b.1, many));
     Ok(free.fold(first, |best, free| if by_criterion(&free, &best).is_lt() { free } else { best }))
 }
