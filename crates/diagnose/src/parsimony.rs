@@ -78,7 +78,8 @@ pub(crate) fn prune(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<S
     Ok(now)
 }
 
-/// Hypotheses and coordinates of what a member of a set becomes where some of its numbers do nothing, as far as they are known and not in the set.
+/// Hypotheses and coordinates of what a member of a set becomes where some of its numbers do nothing, as far as they are known and not in the set: plainer
+/// laws, and itself with what it held in reserve as usual.
 pub(crate) fn plainer(
     (h, x): &(Hypothesis, Vec<f64>),
     set: &EffectSet,
@@ -98,7 +99,13 @@ pub(crate) fn plainer(
         let plain = Hypothesis { held, ..plain };
         Some(std::iter::once(other.coordinates).chain(afar).map(move |x| (plain.clone(), x)))
     };
-    others.into_iter().filter_map(of).flatten().filter(|(plain, _)| !set.has_finding(plain)).collect()
+    let usual = known.iter().find(|k| k.title() == h.title() && !k.reserve.is_empty() && h.reserve.is_empty());
+    let usual = usual.map(|usual| {
+        let mut x = x.clone();
+        usual.reserve.iter().for_each(|(k, _)| x[*k] = usual.coordinates[*k].neutral);
+        (usual.clone(), x)
+    });
+    others.into_iter().filter_map(of).flatten().filter(|(plain, _)| !set.has_finding(plain)).chain(usual).collect()
 }
 
 /// Puts a plainer law in the place of one that has grown into it, and a likelier one in that of its equal.
@@ -142,4 +149,36 @@ pub(crate) fn simplify(
 fn is_idle(rich: &Standing, plain: &Standing, brought: f64) -> bool {
     let [rich, plain] = [rich, plain].map(Standing::judge);
     rich.is_significant() && takes_little(rich.excess(), plain.excess(), brought + rich.excess())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::hypotheses;
+    use crate::facts::{Facts, JointFact};
+
+    /// What was free to creep with numbers of its own creeps elsewhere without them; what was not begins where it stands.
+    #[test]
+    fn a_plainer_law_begins_at_either_end_of_what_was_freed() {
+        let joint = JointFact { name: "j".to_owned(), coordinate: 0, armature: 0.0, largest_command: 0.0, travel: 0.0 };
+        let all = hypotheses(&Facts { joints: vec![joint], duration: 1.0, ..Facts::default() });
+        let rich = all.iter().find(|h| h.name == "joint-stribeck-friction").expect("it is in the library");
+        let x = [vec![0.5, 0.1], rich.neutral()[2..].to_vec()].concat();
+        let of = |h: &Hypothesis, x: &[f64]| {
+            let member = (h.clone(), x.to_vec());
+            plainer(&member, &EffectSet::default().with(h, x), &all)
+        };
+        let held = of(rich, &x);
+        assert_eq!(held.len(), 1);
+        assert!(!held[0].0.reserve.is_empty(), "its reach and its creep stay as usual");
+        let (free, x) = rich.relaxed(&x).expect("it has both in reserve");
+        let begins = of(&free, &x);
+        let (own, begins) = begins.split_last().expect("there are plainer ones");
+        assert!(own.0 == *rich && own.1[3..] == rich.neutral()[3..] && own.1[..3] == x[..3], "itself as usual");
+        assert_eq!(begins.len(), 3);
+        assert!(begins.iter().all(|(h, x)| h.name == "joint-coulomb-friction" && h.reserve.is_empty() && x[0] == 0.5));
+        assert_eq!(begins[0].1[1..], x[3..], "the first is where the richer one stands");
+        let creep: Vec<f64> = begins.iter().map(|(_, x)| x[2]).collect();
+        assert!(creep[1] > creep[2] && begins[1].1[1] > begins[2].1[1], "smooth before stiff: {creep:?}");
+    }
 }
