@@ -116,20 +116,21 @@ pub(crate) fn simplify(
     (all, brought): (&[Hypothesis], f64),
 ) -> Result<Standing, DiagnoseError> {
     for member in 0..now.judge().set.members.len() {
-        for (plain, x) in plainer(&now.judge().set.members[member], &now.judge().set, all) {
+        // From one begin each: in windows a law is not held where samples have it, and its valleys are wider.
+        let mut forms = plainer(&now.judge().set.members[member], &now.judge().set, all);
+        forms.retain(|(h, _)| h.title() != now.judge().set.members[member].0.title());
+        forms.dedup_by(|b, a| a.0.title() == b.0.title());
+        for (plain, x) in forms {
             let set = now.judge().set.without(member).with(&plain, &x);
             let is_far = |near: &Fit| near.rms() > PLAINER * now.judge().rms();
             let of = |set: &EffectSet, effort| fit(stage, plant, set.clone(), now.judge().segments.clone(), effort);
             let near = of(&set, GLANCE)?;
             let released = if is_far(&near) { set.released() } else { Vec::new() };
             // What a plainer law cannot do without it may do with what it holds in reserve.
-            let mut all = vec![near];
-            for free in &released {
-                all.extend(of(free, LOOK).ok());
-            }
-            let Some(near) = all.into_iter().min_by(|a, b| a.rms().total_cmp(&b.rms())).filter(|n| !is_far(n)) else {
+            let near = released.first().map_or(Ok(near), |free| of(free, LOOK))?;
+            if is_far(&near) {
                 continue;
-            };
+            }
             let tried = now.refit(stage, plant, near.set, LOOK)?;
             let costs = criterion(tried.judge()) - criterion(now.judge());
             stage.work.watch.step(&format!("{} instead costs {costs:.1}", plain.title()));
