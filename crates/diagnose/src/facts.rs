@@ -56,6 +56,13 @@ impl Facts {
             lines: Vec::new(),
         }
     }
+
+    /// So many joints `j0`, `j1` … of which nothing is known, over a second.
+    #[cfg(test)]
+    pub(crate) fn of_joints(count: usize) -> Self {
+        let joint = |k: usize| JointFact { name: format!("j{k}"), coordinate: k, ..JointFact::default() };
+        Self { joints: (0..count).map(joint).collect(), duration: 1.0, ..Self::default() }
+    }
 }
 
 impl Facts {

@@ -567,12 +567,11 @@ pub fn pseudo_inverse(a: &DMatrix<f64>) -> DMatrix<f64> {
 mod tests {
     use super::*;
     use crate::catalogue::hypotheses;
-    use crate::facts::{Facts, JointFact};
+    use crate::facts::Facts;
 
     #[test]
     fn friction_that_leads_astray_may_creep_and_what_has_nothing_in_reserve_stays() {
-        let joint = JointFact { name: "j".to_owned(), coordinate: 0, armature: 0.0, largest_command: 0.0, travel: 0.0 };
-        let all = hypotheses(&Facts { joints: vec![joint], duration: 1.0, ..Facts::default() });
+        let all = hypotheses(&Facts::of_joints(1));
         let of = |name: &str| all.iter().find(|h| h.name == name).expect("it is in the library");
         let (dry, viscous) = (of("joint-coulomb-friction"), of("joint-viscous-friction"));
         let plain = EffectSet::default().with(viscous, &viscous.neutral());

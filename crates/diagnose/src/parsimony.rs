@@ -78,8 +78,7 @@ pub(crate) fn prune(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<S
     Ok(now)
 }
 
-/// Hypotheses and coordinates of what a member of a set becomes where some of its numbers do nothing, as far as they are known and not in the set: plainer
-/// laws, and itself with what it held in reserve as usual.
+/// Hypotheses and coordinates of what a member of a set becomes where some of its numbers do nothing, as far as they are known and not in the set.
 pub(crate) fn plainer(
     (h, x): &(Hypothesis, Vec<f64>),
     set: &EffectSet,
@@ -89,23 +88,13 @@ pub(crate) fn plainer(
     let of = |other: Alternative| {
         let is_here = |p: &&Hypothesis| p.name == other.name && (p.place == h.place || other.is_at_contact);
         let plain = known.iter().find(is_here)?;
-        // What a law has had to free its plainer form has free too, and needs it elsewhere where it was free to do with its own numbers what that does.
-        let free = plain.relaxed_afar(&other.coordinates).filter(|_| h.reserve.is_empty());
-        let (plain, afar) = match free {
-            Some([smooth, stiff]) => (smooth.0, vec![smooth.1, stiff.1]),
-            None => (plain.clone(), Vec::new()),
-        };
+        // What a law has had to free its plainer form has free too.
+        let free = plain.relaxed(&other.coordinates).filter(|_| h.reserve.is_empty());
+        let plain = free.map_or_else(|| plain.clone(), |(free, _)| free);
         let held = [&plain.held[..], &other.held[..]].concat();
-        let plain = Hypothesis { held, ..plain };
-        Some(std::iter::once(other.coordinates).chain(afar).map(move |x| (plain.clone(), x)))
+        Some((Hypothesis { held, ..plain }, other.coordinates))
     };
-    let usual = known.iter().find(|k| k.title() == h.title() && !k.reserve.is_empty() && h.reserve.is_empty());
-    let usual = usual.map(|usual| {
-        let mut x = x.clone();
-        usual.reserve.iter().for_each(|(k, _)| x[*k] = usual.coordinates[*k].neutral);
-        (usual.clone(), x)
-    });
-    others.into_iter().filter_map(of).flatten().filter(|(plain, _)| !set.has_finding(plain)).chain(usual).collect()
+    others.into_iter().filter_map(of).filter(|(plain, _)| !set.has_finding(plain)).collect()
 }
 
 /// Puts a plainer law in the place of one that has grown into it, and a likelier one in that of its equal.
@@ -116,18 +105,14 @@ pub(crate) fn simplify(
     (all, brought): (&[Hypothesis], f64),
 ) -> Result<Standing, DiagnoseError> {
     for member in 0..now.judge().set.members.len() {
-        // From one begin each: in windows a law is not held where samples have it, and its valleys are wider.
-        let mut forms = plainer(&now.judge().set.members[member], &now.judge().set, all);
-        forms.retain(|(h, _)| h.title() != now.judge().set.members[member].0.title());
-        forms.dedup_by(|b, a| a.0.title() == b.0.title());
-        for (plain, x) in forms {
+        for (plain, x) in plainer(&now.judge().set.members[member], &now.judge().set, all) {
             let set = now.judge().set.without(member).with(&plain, &x);
             let is_far = |near: &Fit| near.rms() > PLAINER * now.judge().rms();
             let of = |set: &EffectSet, effort| fit(stage, plant, set.clone(), now.judge().segments.clone(), effort);
             let near = of(&set, GLANCE)?;
-            let released = if is_far(&near) { set.released() } else { Vec::new() };
+            let released = is_far(&near).then(|| set.released()).and_then(|ends| ends.into_iter().next());
             // What a plainer law cannot do without it may do with what it holds in reserve.
-            let near = released.first().map_or(Ok(near), |free| of(free, LOOK))?;
+            let near = released.map_or(Ok(near), |free| of(&free, LOOK))?;
             if is_far(&near) {
                 continue;
             }
@@ -150,36 +135,4 @@ pub(crate) fn simplify(
 fn is_idle(rich: &Standing, plain: &Standing, brought: f64) -> bool {
     let [rich, plain] = [rich, plain].map(Standing::judge);
     rich.is_significant() && takes_little(rich.excess(), plain.excess(), brought + rich.excess())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::catalogue::hypotheses;
-    use crate::facts::{Facts, JointFact};
-
-    /// What was free to creep with numbers of its own creeps elsewhere without them; what was not begins where it stands.
-    #[test]
-    fn a_plainer_law_begins_at_either_end_of_what_was_freed() {
-        let joint = JointFact { name: "j".to_owned(), coordinate: 0, armature: 0.0, largest_command: 0.0, travel: 0.0 };
-        let all = hypotheses(&Facts { joints: vec![joint], duration: 1.0, ..Facts::default() });
-        let rich = all.iter().find(|h| h.name == "joint-stribeck-friction").expect("it is in the library");
-        let x = [vec![0.5, 0.1], rich.neutral()[2..].to_vec()].concat();
-        let of = |h: &Hypothesis, x: &[f64]| {
-            let member = (h.clone(), x.to_vec());
-            plainer(&member, &EffectSet::default().with(h, x), &all)
-        };
-        let held = of(rich, &x);
-        assert_eq!(held.len(), 1);
-        assert!(!held[0].0.reserve.is_empty(), "its reach and its creep stay as usual");
-        let (free, x) = rich.relaxed(&x).expect("it has both in reserve");
-        let begins = of(&free, &x);
-        let (own, begins) = begins.split_last().expect("there are plainer ones");
-        assert!(own.0 == *rich && own.1[3..] == rich.neutral()[3..] && own.1[..3] == x[..3], "itself as usual");
-        assert_eq!(begins.len(), 3);
-        assert!(begins.iter().all(|(h, x)| h.name == "joint-coulomb-friction" && h.reserve.is_empty() && x[0] == 0.5));
-        assert_eq!(begins[0].1[1..], x[3..], "the first is where the richer one stands");
-        let creep: Vec<f64> = begins.iter().map(|(_, x)| x[2]).collect();
-        assert!(creep[1] > creep[2] && begins[1].1[1] > begins[2].1[1], "smooth before stiff: {creep:?}");
-    }
 }

@@ -218,16 +218,14 @@ impl Linear<'_> {
 mod tests {
     use super::*;
     use crate::catalogue::hypotheses;
-    use crate::facts::{Facts, JointFact};
+    use crate::facts::Facts;
     use crate::screen::Shown;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
     /// Viscous friction of three joints.
     fn three() -> Vec<Hypothesis> {
-        let joint = |k: usize| JointFact { name: format!("j{k}"), coordinate: k, ..JointFact::default() };
-        let facts = Facts { joints: (0..3).map(joint).collect(), duration: 1.0, ..Facts::default() };
-        hypotheses(&facts).into_iter().filter(|h| h.name == "joint-viscous-friction").collect()
+        hypotheses(&Facts::of_joints(3)).into_iter().filter(|h| h.name == "joint-viscous-friction").collect()
     }
 
     /// Products by fold of three columns and a residual: the third column is the sum of the others and some noise.

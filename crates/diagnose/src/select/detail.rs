@@ -4,8 +4,10 @@
 //! short bursts, and intervals that are not followed cost more than all that it explains brings.
 
 use super::search::{LOOK, criterion};
+use crate::fit::EffectSet;
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem};
+use crate::parsimony::plainer;
 use crate::standing::told;
 
 /// Share of the missing force that a law leaves which is so but for a detail.
@@ -72,4 +74,60 @@ pub(super) fn relaxed(problem: &Problem<'_>, mut now: Fitted, many: usize) -> Fi
         }
     }
     now
+}
+
+/// What a law may become by fewer numbers, and where that begins: its plainer kinds, and itself with what it held in reserve as usual. A plainer kind of a
+/// law that has had to free its reserve begins where that stands, and from each end of what there is: the richer one did with its own numbers what it does.
+pub(super) fn simpler(
+    member: &(Hypothesis, Vec<f64>),
+    set: &EffectSet,
+    known: &[Hypothesis],
+) -> Vec<(Hypothesis, Vec<f64>)> {
+    let (h, x) = member;
+    // The same law before its reserve was freed.
+    let usual = |h: &Hypothesis| {
+        let mut kinds = known.iter().filter(|_| h.reserve.is_empty());
+        kinds.find(|k| k.title() == h.title() && !k.reserve.is_empty())
+    };
+    let begins = |(plain, x): (Hypothesis, Vec<f64>)| {
+        let ends = usual(&plain).and_then(|usual| usual.relaxed_afar(&x)).into_iter().flatten().map(|(_, end)| end);
+        std::iter::once(x.clone()).chain(ends).map(|x| (plain.clone(), x)).collect::<Vec<_>>()
+    };
+    let own = usual(h).map(|usual| {
+        let mut x = x.clone();
+        usual.reserve.iter().for_each(|(k, _)| x[*k] = usual.coordinates[*k].neutral);
+        (usual.clone(), x)
+    });
+    plainer(member, set, known).into_iter().flat_map(begins).chain(own).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::hypotheses;
+    use crate::facts::Facts;
+
+    /// What was free to creep with numbers of its own creeps elsewhere without them; what was not begins where it stands.
+    #[test]
+    fn a_plainer_law_begins_at_either_end_of_what_was_freed() {
+        let all = hypotheses(&Facts::of_joints(1));
+        let rich = all.iter().find(|h| h.name == "joint-stribeck-friction").expect("it is in the library");
+        let x = [vec![0.5, 0.1], rich.neutral()[2..].to_vec()].concat();
+        let of = |h: &Hypothesis, x: &[f64]| {
+            let member = (h.clone(), x.to_vec());
+            simpler(&member, &EffectSet::default().with(h, x), &all)
+        };
+        let held = of(rich, &x);
+        assert_eq!(held.len(), 1);
+        assert!(!held[0].0.reserve.is_empty(), "its reach and its creep stay as usual");
+        let (free, x) = rich.relaxed(&x).expect("it has both in reserve");
+        let begins = of(&free, &x);
+        let (own, begins) = begins.split_last().expect("there are plainer ones");
+        assert!(own.0 == *rich && own.1[3..] == rich.neutral()[3..] && own.1[..3] == x[..3], "itself as usual");
+        assert_eq!(begins.len(), 3);
+        assert!(begins.iter().all(|(h, x)| h.name == "joint-coulomb-friction" && h.reserve.is_empty() && x[0] == 0.5));
+        assert_eq!(begins[0].1[1..], x[3..], "the first is where the richer one stands");
+        let creep: Vec<f64> = begins.iter().map(|(_, x)| x[2]).collect();
+        assert!(creep[1] > creep[2] && begins[1].1[1] > begins[2].1[1], "smooth before stiff: {creep:?}");
+    }
 }

@@ -129,13 +129,11 @@ const EXOTIC: f64 = 4.6;
 mod tests {
     use super::*;
     use crate::catalogue::hypotheses;
-    use crate::facts::{Facts, JointFact};
+    use crate::facts::Facts;
 
     #[test]
     fn more_numbers_cost_more_and_a_tolerated_number_costs_nothing() {
-        let joint = JointFact { name: "j".to_owned(), coordinate: 0, armature: 0.0, largest_command: 0.0, travel: 0.0 };
-        let facts = Facts { joints: vec![joint], duration: 1.0, ..Facts::default() };
-        let all = hypotheses(&facts);
+        let all = hypotheses(&Facts::of_joints(1));
         let of = |name: &str| all.iter().find(|h| h.name == name).expect("it is in the library");
         let plain = price(of("joint-viscous-friction"), 1000, 50);
         assert!((price(of("joint-viscous-asymmetry"), 1000, 50) - plain - 1000f64.ln()).abs() < 1e-12, "by ln N");

@@ -195,7 +195,7 @@ impl<'a> Regression<'a> {
 mod tests {
     use super::*;
     use crate::catalogue::hypotheses;
-    use crate::facts::{Facts, JointFact};
+    use crate::facts::Facts;
     use crate::identify::track::{Link, Side};
     use crate::select::pool::Entry;
     use rand_chacha::ChaCha8Rng;
@@ -209,10 +209,8 @@ mod tests {
 
     /// Viscous friction of three joints, a column each, beside a force on each joint.
     fn pool() -> Pool {
-        let joint = |k: usize| JointFact { name: format!("j{k}"), coordinate: k, ..JointFact::default() };
-        let facts = Facts { joints: (0..JOINTS).map(joint).collect(), duration: 1.0, ..Facts::default() };
         let hypotheses: Vec<_> =
-            hypotheses(&facts).into_iter().filter(|h| h.name == "joint-viscous-friction").collect();
+            hypotheses(&Facts::of_joints(JOINTS)).into_iter().filter(|h| h.name == "joint-viscous-friction").collect();
         let entries = (0..JOINTS).map(|hypothesis| Entry { hypothesis, point: 0, columns: hypothesis..hypothesis + 1 });
         Pool { entries: entries.collect(), hypotheses, variations: Vec::new() }
     }

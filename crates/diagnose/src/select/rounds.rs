@@ -128,8 +128,10 @@ fn fit_first(
     }
     // A law that leads astray may do so for what it holds in reserve.
     let free = set.released().into_iter().filter_map(|free| look(free).ok());
-    let by_criterion = |a: &(_, Fitted), b: &(_, Fitted)| criterion(&a.1, many).total_cmp(&criterion(&b.1, many));
-    Ok(free.fold(first, |best, free| if by_criterion(&free, &best).is_lt() { free } else { best }))
+    let better = |best: (_, Fitted), free: (_, Fitted)| {
+        if criterion(&free.1, many) < criterion(&best.1, many) { free } else { best }
+    };
+    Ok(free.fold(first, better))
 }
 
 /// What is fitted next: the first of the proposals that was not yet, and of laws alone where nothing was enough.
@@ -157,14 +159,14 @@ fn best_of(
     (before, many): (f64, usize),
 ) -> Option<(Fitted, Option<Fitted>)> {
     let gain = |fit: &Fitted| before - criterion(fit, many);
-    let close = |all: Vec<(usize, Fitted)>| -> Vec<(usize, Fitted)> {
+    let close = |all: &[(usize, Fitted)]| {
         let most = all.iter().map(|(_, fit)| gain(fit)).fold(f64::NEG_INFINITY, f64::max);
-        all.into_iter().filter(|(_, fit)| gain(fit) >= most - CLOSE * most.abs()).collect()
+        most - CLOSE * most.abs()
     };
     // What leaves more than noise is not followed to the end of what it does without what it holds in reserve.
-    let free = |(index, fit): (usize, Fitted)| {
-        let is_noise = remainder(problem, &fit).is_ok_and(|left| left.is_noise());
-        (index, if is_noise { fit } else { relaxed(problem, fit, many) })
+    let free = |(index, fit): &(usize, Fitted)| {
+        let is_noise = remainder(problem, fit).is_ok_and(|left| left.is_noise());
+        (*index, if is_noise { fit.clone() } else { relaxed(problem, fit.clone(), many) })
     };
     let to_the_end = |(index, fit): (usize, Fitted)| {
         let fit = to_the_end(problem, fit);
@@ -174,8 +176,10 @@ fn best_of(
         fit
     };
     let by_criterion = |a: &Fitted, b: &Fitted| criterion(a, many).total_cmp(&criterion(b, many));
-    let freed = close(worthy.clone()).into_iter().map(free).collect();
-    let best = close(freed).into_iter().map(to_the_end).min_by(by_criterion)?;
+    let least = close(&worthy);
+    let freed: Vec<(usize, Fitted)> = worthy.iter().filter(|(_, fit)| gain(fit) >= least).map(free).collect();
+    let least = close(&freed);
+    let best = freed.into_iter().filter(|(_, fit)| gain(fit) >= least).map(to_the_end).min_by(by_criterion)?;
     let effects = |fit: &Fitted| fit.set.findings().count();
     let smaller = worthy.into_iter().map(|(_, fit)| fit).filter(|fit| effects(fit) < effects(&best));
     let smaller = smaller.min_by(by_criterion);

@@ -1,6 +1,6 @@
 //! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
 
-use super::detail::relaxed;
+use super::detail::{relaxed, simpler};
 use super::exchange::exchanged;
 use super::gamma_quantile_over_mean;
 use super::kin::alone_of_their_kind;
@@ -17,7 +17,6 @@ use crate::fit::{EffectSet, first_sizes, vary};
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach, ridge_of};
 use crate::identify::marginal::{Chain, Spread, estimate, score};
-use crate::parsimony::plainer;
 use crate::screen::Score;
 use crate::standing::told;
 use crate::work::Until;
@@ -472,7 +471,7 @@ fn simplified(
     (many, all): (usize, f64),
 ) -> Result<Fitted, DiagnoseError> {
     for member in now.set.members.clone() {
-        for (plain, x) in plainer(&member, &now.set, known) {
+        for (plain, x) in simpler(&member, &now.set, known) {
             let Some(at) = now.set.members.iter().position(|m| m.0.title() == member.0.title()) else { continue };
             let Ok(glance) = problem.fit(&now, now.set.without(at).with(&plain, &x), GLANCE) else { continue };
             if criterion(&glance, many) - criterion(&now, many) > FAR {

@@ -239,7 +239,7 @@ impl Ground<'_> {
 mod tests {
     use super::*;
     use crate::catalogue::hypotheses;
-    use crate::facts::{Facts, JointFact};
+    use crate::facts::Facts;
     use crate::identify::track::{Link, Side};
     use nalgebra::DVector;
     use rand_chacha::ChaCha8Rng;
@@ -252,10 +252,8 @@ mod tests {
 
     /// Viscous friction of three joints, a column each.
     fn pool() -> Pool {
-        let joint = |k: usize| JointFact { name: format!("j{k}"), coordinate: k, ..JointFact::default() };
-        let facts = Facts { joints: (0..3).map(joint).collect(), duration: 1.0, ..Facts::default() };
         let hypotheses: Vec<_> =
-            hypotheses(&facts).into_iter().filter(|h| h.name == "joint-viscous-friction").collect();
+            hypotheses(&Facts::of_joints(3)).into_iter().filter(|h| h.name == "joint-viscous-friction").collect();
         let entries = (0..3).map(|hypothesis| Entry { hypothesis, point: 0, columns: hypothesis..hypothesis + 1 });
         Pool { entries: entries.collect(), hypotheses, variations: Vec::new() }
     }
