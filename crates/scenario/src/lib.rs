@@ -9,6 +9,7 @@ mod error;
 mod glob;
 mod load;
 pub mod measure;
+mod navigation;
 pub mod outcome;
 mod overrides;
 pub mod recording;

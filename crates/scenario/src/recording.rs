@@ -52,9 +52,9 @@ pub fn recorder_plan(mission: &Mission, scene: &Scene) -> Result<RecorderPlan, S
     let scenario = &mission.scenario;
     let patterns = scenario.output.channels.clone();
     let mut probes = relative_motion(mission);
-    for sensor in sensors::of_mission(mission).map_err(ScenarioErrors::new)? {
-        probes.push(Box::new(sensor));
-    }
+    probes.extend(mission.navigator.as_ref().map(|n| Box::new(n.clone().as_probe()) as Box<dyn Probe + Send>));
+    let sensors = sensors::of(scenario, mission.world.model()).map_err(ScenarioErrors::new)?;
+    probes.push(Box::new(sensors::Recorded::new(sensors)));
     Ok(RecorderPlan {
         meta: Meta {
             scenario: scenario.name.clone(),

@@ -9,16 +9,16 @@
 //! | `actuator.….command` of the others; a thruster's by its largest force | likewise |
 //! | `drive.….position`, `.angle` | at the scenario's log rate |
 
-use crate::sensors::{self, Sensor};
+use crate::sensors::{self, Readers, Sensor};
 use crate::{Mission, ScenarioErrors};
-use record::{Probe, RecordedRun, RecordingSet, Role, Series};
+use record::{RecordedRun, RecordingSet, Role, Series};
 use sim::{ActuatorKind, Command, DriveAxis, Flow, Model, Observer, World};
 use std::collections::BTreeMap;
 
 /// The observer that takes it down.
 #[derive(Debug)]
 pub struct RigLog {
-    sensors: Vec<Sensor>,
+    sensors: Readers,
     taken: BTreeMap<String, (Vec<f64>, Vec<f64>)>,
     commands: Vec<Commanded>,
     drives: Vec<String>,
@@ -56,7 +56,7 @@ impl RigLog {
             DriveAxis::AboutZ => format!("drive.{name}.angle"),
         };
         Ok(Self {
-            sensors: sensors::of_mission(mission).map_err(ScenarioErrors::new)?,
+            sensors: Readers::new(sensors::of(scenario, model).map_err(ScenarioErrors::new)?),
             taken: BTreeMap::new(),
             commands: commands_of(model),
             drives: model.driven_coordinates().map(|(n, axis)| name((n, axis))).collect(),
@@ -100,7 +100,7 @@ impl RigLog {
 
     /// The run as a set of one, under a file's name.
     pub fn finish(mut self, file: &str, (role, note): (Role, &str)) -> RecordingSet {
-        let noise = self.sensors.iter().map(Sensor::noise).filter(|(_, sigma)| *sigma > 0.0);
+        let noise = self.sensors.sensors().map(Sensor::noise).filter(|(_, sigma)| *sigma > 0.0);
         let noise = noise.map(|(name, sigma)| (name.to_owned(), sigma)).collect();
         // A feed-forward that never was is no command.
         let idle: Vec<&str> =
@@ -155,15 +155,12 @@ fn commands_of(model: &Model) -> Vec<Commanded> {
 
 impl Observer for RigLog {
     fn observe(&mut self, world: &World) -> Flow {
-        let mut sensors = std::mem::take(&mut self.sensors);
-        for sensor in &mut sensors {
-            sensor.observe(world);
-            while let Some((time, reading)) = sensor.arrived(world) {
-                for (channel, value) in sensor.names().zip(sensor.shown(reading)) {
-                    self.take(channel, time, value);
-                }
+        let mut sensors = std::mem::replace(&mut self.sensors, Readers::new(Vec::new()));
+        sensors.look(world, |sensor, arrival| {
+            for (channel, value) in sensor.names().zip(sensor.shown(arrival.value)) {
+                self.take(channel, arrival.arrives, value);
             }
-        }
+        });
         self.sensors = sensors;
         // At the start nothing has been commanded yet.
         if world.state().steps > 0 {

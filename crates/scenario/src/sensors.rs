@@ -6,7 +6,8 @@
 //!
 //! and of an orientation q exp(σ n). A recording holds the last reading that has arrived since its sample before; an empty cell where none has. A joint, body
 //! or drive whose sensor an effect faults is read in every step, without noise. What reads a joint or a body is recorded under that name instead of what is
-//! true. The noise of a quantity depends on the scenario's seed and on the quantity's name alone.
+//! true. The noise of a reading depends on the scenario's seed, the quantity's name and the number of the reading alone: who reads the same sensor, a
+//! recorder or a controller, reads the same. A sensor holds no memory; that is its reader's, plain numbers that a snapshot of the state can hold.
 //!
 //! A contact force is that of the last step.
 
@@ -17,21 +18,19 @@ pub(crate) use parts::{Part, parts_of};
 use crate::effects::SENSOR_DELAY;
 use crate::measure::{Gauge, Quantity, Reading, SensorModel};
 use crate::spec::{Scenario, Sensor as SensorSpec};
-use crate::{Mission, ScenarioError};
+use crate::ScenarioError;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use record::{ChannelName, ChannelSpec, Plot, Probe};
 use sim::{Model, World};
 use spatial::{Vec3, exp_rotation};
-use std::collections::VecDeque;
 
 /// Part of a step by which a reading may come early: times of steps are rounded.
 const ROUNDING: f64 = 1e-6;
 
-/// The sensors of a mission, ready to be recorded.
-pub(crate) fn of_mission(mission: &Mission) -> Result<Vec<Sensor>, Vec<ScenarioError>> {
-    let (scenario, model) = (&mission.scenario, mission.world.model());
+/// The sensors of a scenario, and the quantities whose reading an effect faults.
+pub(crate) fn of(scenario: &Scenario, model: &Model) -> Result<Vec<Sensor>, Vec<ScenarioError>> {
     let (mut sensors, mut errors) = (Vec::<Sensor>::new(), Vec::new());
     for (i, sensor) in scenario.sensors.iter().enumerate() {
         let most = 1.0 / scenario.integrator.step_s;
@@ -110,47 +109,84 @@ struct Timing {
     message: u64,
 }
 
-/// A reading: when it arrives, s, and what it says; of an orientation w, x, y, z.
-pub(crate) type Arrival = (f64, [f64; 4]);
+/// A reading: when it was taken by the sensor's own word (which knows nothing of what effects make late) and arrives, s, and what it says; of an
+/// orientation w, x, y, z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Arrival {
+    pub taken: f64,
+    pub arrives: f64,
+    pub value: [f64; 4],
+}
+
+/// Numbers of a reading on its way.
+const PARCEL: usize = 6;
+/// Words of a random stream that a reading may use: three times three normal numbers, and what their sampling rejects.
+const WORDS: u128 = 128;
+
+/// Places in a sensor's memory.
+mod slot {
+    /// Number of the reading that is due next.
+    pub(super) const NEXT: usize = 0;
+    /// What the bias has walked by.
+    pub(super) const WALKED: usize = 1;
+    /// When that was seen last, s.
+    pub(super) const SINCE: usize = 4;
+    /// Readings so far.
+    pub(super) const TAKEN: usize = 5;
+    /// Which of the places for readings on their way holds the oldest, and how many are on their way.
+    pub(super) const OLDEST: usize = 6;
+    pub(super) const COUNT: usize = 7;
+    pub(super) const SENT: usize = 8;
+}
 
 /// One quantity, as its sensor reads it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Sensor {
     part: Part,
     gauge: Gauge,
     faults: SensorModel,
     timing: Timing,
     channels: Vec<ChannelSpec>,
-    random: ChaCha8Rng,
-    losses: ChaCha8Rng,
-    /// Number of the reading that is due next.
-    next: f64,
-    /// What the bias has walked by, and when it was seen last, s.
-    walked: (Vec3, f64),
-    /// Readings on their way.
-    sent: VecDeque<Arrival>,
+    seed: u64,
+    /// How many readings can be on their way.
+    room: usize,
 }
 
 impl Sensor {
     fn new(scenario: &Scenario, model: &Model, part: Part, timing: Timing) -> Option<Self> {
         let gauge = Gauge::resolve(scenario, model, &part.name).ok()?;
         let faults = SensorModel::of(&scenario.effects, model, &part.name);
-        let mut random = ChaCha8Rng::seed_from_u64(scenario.seed);
-        random.set_stream(hash(&part.name));
-        let mut losses = ChaCha8Rng::seed_from_u64(scenario.seed);
-        losses.set_stream(timing.message);
+        let timing = Timing { delay: timing.delay + faults.delay, ..timing };
+        let rate = timing.rate.unwrap_or(1.0 / scenario.integrator.step_s);
         Some(Self {
             gauge,
             faults,
-            timing: Timing { delay: timing.delay + faults.delay, ..timing },
+            timing,
             channels: channels(model, &part.name, gauge.quantity()),
             part,
-            random,
-            losses,
-            next: 0.0,
-            walked: (Vec3::zeros(), 0.0),
-            sent: VecDeque::new(),
+            seed: scenario.seed,
+            room: (timing.delay.max(0.0) * rate).ceil() as usize + 2,
         })
+    }
+
+    /// How many numbers it wants remembered, all zero at the start.
+    pub(crate) fn memory_len(&self) -> usize {
+        slot::SENT + PARCEL * self.room
+    }
+
+    /// The quantity that it reads.
+    pub(crate) fn quantity(&self) -> Quantity {
+        self.gauge.quantity()
+    }
+
+    /// Its name in recordings.
+    pub(crate) fn name(&self) -> &str {
+        &self.part.name
+    }
+
+    /// Standard deviation of its noise, the step of its scale counted in.
+    pub(crate) fn sigma(&self) -> f64 {
+        self.part.sigma.hypot(self.part.step / 12f64.sqrt())
     }
 
     /// The channels that it writes, in the order of an [`Arrival`]'s numbers.
@@ -177,41 +213,77 @@ impl Sensor {
         self.channels.iter().map(move |spec| reading[component(spec)])
     }
 
-    /// The next reading that has arrived by now.
-    pub(crate) fn arrived(&mut self, world: &World) -> Option<Arrival> {
-        let now = world.state().time + ROUNDING * world.model().step;
-        self.sent.pop_front_if(|(arrives, _)| *arrives <= now)
+    /// The next reading that has arrived by now; called in every step, so that none waits without a place.
+    pub(crate) fn arrived(&self, world: &World, memory: &mut [f64]) -> Option<Arrival> {
+        if memory[slot::COUNT] == 0.0 {
+            return None;
+        }
+        let oldest = memory[slot::OLDEST] as usize;
+        let parcel = &memory[slot::SENT + PARCEL * oldest..][..PARCEL];
+        let arrival = Arrival { taken: parcel[0], arrives: parcel[1], value: [parcel[2], parcel[3], parcel[4], parcel[5]] };
+        if arrival.arrives > world.state().time + ROUNDING * world.model().step {
+            return None;
+        }
+        memory[slot::OLDEST] = ((oldest + 1) % self.room) as f64;
+        memory[slot::COUNT] -= 1.0;
+        Some(arrival)
+    }
+
+    /// Reads the world if that is due, and sends the reading on its way.
+    pub(crate) fn observe(&self, world: &World, memory: &mut [f64]) {
+        if !self.is_due(world, memory) {
+            return;
+        }
+        let Some(value) = self.reading(world, memory) else { return };
+        let taken = world.state().time;
+        let (oldest, count) = (memory[slot::OLDEST] as usize, memory[slot::COUNT] as usize);
+        let parcel = &mut memory[slot::SENT + PARCEL * ((oldest + count) % self.room)..][..PARCEL];
+        let stamp = taken + self.faults.delay;
+        parcel.copy_from_slice(&[stamp, taken + self.timing.delay, value[0], value[1], value[2], value[3]]);
+        memory[slot::COUNT] = (count + 1).min(self.room) as f64;
     }
 
     /// Whether a reading is due, and which comes then.
-    fn is_due(&mut self, world: &World) -> bool {
+    fn is_due(&self, world: &World, memory: &mut [f64]) -> bool {
         let Some(rate) = self.timing.rate else { return true };
         let ticks = (world.state().time + ROUNDING * world.model().step) * rate;
-        if ticks < self.next {
+        if ticks < memory[slot::NEXT] {
             return false;
         }
-        self.next = ticks.floor() + 1.0;
+        memory[slot::NEXT] = ticks.floor() + 1.0;
         true
     }
 
-    /// Three standard normal numbers.
-    fn normal(&mut self) -> Vec3 {
-        Vec3::from_fn(|_, _| StandardNormal.sample(&mut self.random))
+    /// The random numbers of a reading, in a stream.
+    fn random(&self, stream: u64, reading: u64) -> ChaCha8Rng {
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        random.set_stream(stream);
+        random.set_word_pos(u128::from(reading) * WORDS);
+        random
     }
 
     /// The value that the sensor gives for the world as it is; none where it is lost.
-    fn reading(&mut self, world: &World) -> Option<[f64; 4]> {
-        // Drawn whether or not there is noise, so that another level scales it and draws no other.
-        let noise = self.part.sigma * self.normal();
-        if self.part.walk > 0.0 {
-            let since = world.state().time - self.walked.1;
-            self.walked = (self.walked.0 + self.part.walk * since.sqrt() * self.normal(), world.state().time);
+    fn reading(&self, world: &World, memory: &mut [f64]) -> Option<[f64; 4]> {
+        let number = memory[slot::TAKEN] as u64;
+        memory[slot::TAKEN] += 1.0;
+        let mut off = self.part.bias;
+        if self.part.sigma > 0.0 || self.part.walk > 0.0 {
+            let mut random = self.random(hash(&self.part.name), number);
+            let mut normal = || Vec3::from_fn(|_, _| StandardNormal.sample(&mut random));
+            off += self.part.sigma * normal();
+            if self.part.walk > 0.0 {
+                let step = self.part.walk * (world.state().time - memory[slot::SINCE]).sqrt() * normal();
+                let walked = Vec3::from_column_slice(&memory[slot::WALKED..][..3]) + step;
+                memory[slot::WALKED..][..3].copy_from_slice(walked.as_slice());
+                memory[slot::SINCE] = world.state().time;
+                off += walked;
+            }
         }
-        let is_lost = self.timing.dropout > 0.0 && uniform(&mut self.losses) < self.timing.dropout;
+        let is_lost =
+            self.timing.dropout > 0.0 && uniform(&mut self.random(self.timing.message, number)) < self.timing.dropout;
         if is_lost || !self.sees(world) {
             return None;
         }
-        let off = self.part.bias + self.walked.0 + noise;
         let shown = |x: f64| {
             let clipped = self.part.limit.map_or(x, |limit| x.clamp(-limit, limit));
             if self.part.step > 0.0 { (clipped / self.part.step).round() * self.part.step } else { clipped }
@@ -264,24 +336,66 @@ fn hash(name: &str) -> u64 {
     name.bytes().fold(0xcbf2_9ce4_8422_2325, add)
 }
 
-impl Probe for Sensor {
+/// Sensors with the memory of who reads them.
+#[derive(Debug)]
+pub(crate) struct Readers(Vec<(Sensor, Vec<f64>)>);
+
+impl Readers {
+    pub(crate) fn new(sensors: Vec<Sensor>) -> Self {
+        let blank = |sensor: Sensor| {
+            let memory = vec![0.0; sensor.memory_len()];
+            (sensor, memory)
+        };
+        Self(sensors.into_iter().map(blank).collect())
+    }
+
+    /// The sensors.
+    pub(crate) fn sensors(&self) -> impl Iterator<Item = &Sensor> {
+        self.0.iter().map(|(sensor, _)| sensor)
+    }
+
+    /// Lets all look, and tells what has arrived.
+    pub(crate) fn look(&mut self, world: &World, mut take: impl FnMut(&Sensor, &Arrival)) {
+        for (sensor, memory) in &mut self.0 {
+            sensor.observe(world, memory);
+            while let Some(arrival) = sensor.arrived(world, memory) {
+                take(sensor, &arrival);
+            }
+        }
+    }
+}
+
+/// Sensors as channels of a recorder.
+#[derive(Debug)]
+pub(crate) struct Recorded {
+    readers: Readers,
+    /// What each has said since the last sample.
+    last: Vec<[f64; 4]>,
+}
+
+impl Recorded {
+    pub(crate) fn new(sensors: Vec<Sensor>) -> Self {
+        Self { last: vec![[f64::NAN; 4]; sensors.len()], readers: Readers::new(sensors) }
+    }
+}
+
+impl Probe for Recorded {
     fn channels(&self) -> Vec<ChannelSpec> {
-        self.channels.clone()
+        self.readers.sensors().flat_map(|sensor| sensor.channels.clone()).collect()
     }
 
     fn observe(&mut self, world: &World) {
-        if self.is_due(world)
-            && let Some(reading) = self.reading(world)
-        {
-            self.sent.push_back((world.state().time + self.timing.delay, reading));
+        for ((sensor, memory), last) in self.readers.0.iter_mut().zip(&mut self.last) {
+            sensor.observe(world, memory);
+            while let Some(arrival) = sensor.arrived(world, memory) {
+                *last = arrival.value;
+            }
         }
     }
 
-    fn read(&mut self, world: &World, values: &mut Vec<f64>) {
-        let mut last = [f64::NAN; 4];
-        while let Some((_, reading)) = self.arrived(world) {
-            last = reading;
+    fn read(&mut self, _: &World, values: &mut Vec<f64>) {
+        for (sensor, last) in self.readers.sensors().zip(&mut self.last) {
+            values.extend(sensor.shown(std::mem::replace(last, [f64::NAN; 4])));
         }
-        values.extend(self.shown(last));
     }
 }

@@ -65,6 +65,6 @@ pub use mechanism::{
 };
 pub use model::{Base, Grain, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, Vehicle, VehicleSpec};
 pub use push::Push;
-pub use run::{Controller, Flow, NoControl, Observer};
+pub use run::{Controller, Flow, Known, Measured, NoControl, Observer, Perception};
 pub use state::{Account, ContactMemory, Pending, State, Work};
 pub use world::{Rest, TouchReport, World};

@@ -47,6 +47,9 @@ pub struct State {
     pub pending: Vec<Pending>,
     /// The controller's memory; its meaning is the controller's.
     pub controller: Vec<f64>,
+    /// Memory of the sensors and the navigation between world and controller; its meaning is theirs.
+    #[serde(default)]
+    pub perception: Vec<f64>,
     /// The commands that act at present.
     pub commands: Vec<crate::Command>,
     /// What came from outside since the start, and what became of it.
@@ -159,6 +162,7 @@ impl State {
             acting: Vec::new(),
             pending: Vec::new(),
             controller: Vec::new(),
+            perception: Vec::new(),
             commands: vec![crate::Command::default(); model.actuators.len()],
             account: Account::default(),
             works: vec![0.0; model.n_works()],
@@ -190,6 +194,7 @@ impl State {
         self.acting.clone_from(&other.acting);
         self.pending.clone_from(&other.pending);
         self.controller.clone_from(&other.controller);
+        self.perception.clone_from(&other.perception);
         self.commands.clone_from(&other.commands);
         self.works.clone_from(&other.works);
         (self.account, self.work) = (other.account, other.work);

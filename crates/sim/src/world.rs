@@ -10,7 +10,7 @@ use crate::push::Push;
 use crate::state::{ContactMemory, State};
 use crate::step::{self, Scheme};
 use crate::workspace::{Workspace, calc_world_momentum};
-use crate::{Command, Works, rk4};
+use crate::{Command, Perception, Works, rk4};
 use friction::Friction;
 use multibody::Kinematics;
 use spatial::{Frame, Twist, Vec3, Wrench};
@@ -27,6 +27,7 @@ pub struct World {
     ws: Workspace,
     is_fresh: bool,
     integrator: Integrator,
+    pub(crate) perception: Option<Arc<dyn Perception>>,
 }
 
 /// A touching point, as the last step left it.
@@ -81,7 +82,7 @@ impl World {
         let is_blank = !state.is_settled && effect::is_blank(&model, &state);
         let ws = Workspace::new(&model);
         let integrator = model.integrator;
-        let mut world = Self { model, state, ws, is_fresh: false, integrator };
+        let mut world = Self { model, state, ws, is_fresh: false, integrator, perception: None };
         world.refresh();
         if is_blank && world.ws.parts.has_parts {
             effect::rest_parts(&world.model, &mut world.state, &world.ws);
@@ -130,9 +131,9 @@ impl World {
         &mut self.state.commands
     }
 
-    /// Commands and the controller's memory; neither changes where anything is.
-    pub(crate) fn state_parts(&mut self) -> (&mut Vec<Command>, &mut Vec<f64>) {
-        (&mut self.state.commands, &mut self.state.controller)
+    /// The state, of which commands and memories of controllers are changed: they change nothing about where anything is.
+    pub(crate) fn state_parts(&mut self) -> &mut State {
+        &mut self.state
     }
 
     /// Brings kinematics and twists up to a state that was changed.

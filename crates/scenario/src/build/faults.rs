@@ -41,6 +41,11 @@ impl<'a> Faults<'a> {
         self.errors.push(ScenarioError { place: self.place(key), problem });
     }
 
+    /// A fault that another check has found.
+    pub(crate) fn push(&mut self, error: ScenarioError) {
+        self.errors.push(error);
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
         self.errors.is_empty()
     }

@@ -30,6 +30,7 @@ pub use stock::Stock;
 
 use crate::error::ScenarioErrors;
 use crate::measure::Gauge;
+use crate::navigation::{self, Navigator};
 use crate::sensors::Part;
 use crate::spec::{self, Scenario};
 use crate::strategy;
@@ -52,6 +53,8 @@ pub struct Mission {
     pub drives: Vec<DriveChannel>,
     /// Guidance and control.
     pub controller: Box<dyn Controller + Send + Sync>,
+    /// What stands between `world` and `controller`, where that is not the truth.
+    pub(crate) navigator: Option<Arc<Navigator>>,
     /// Steps of the whole run.
     pub steps: u64,
     /// Steps between two logged samples.
@@ -133,9 +136,11 @@ fn finish(
 ) -> Result<Mission, ScenarioErrors> {
     check_sensors(scenario, model, &mut faults);
     approach::check_docking(scenario, model, &mut faults);
-    let world = mechanisms::settle(scenario, start::world(scenario, model, table, &mut faults));
+    let mut world = mechanisms::settle(scenario, start::world(scenario, model, table, &mut faults));
     missing::check_freedoms(&world, &files.warnings, &mut faults);
     let controller = strategy::build(scenario, model, table, &mut faults);
+    let navigator = navigation::build(scenario, &world, &mut faults).map(Arc::new);
+    world.perceive(navigator.clone().map(|known| known as Arc<dyn sim::Perception>));
     match controller {
         Some(controller) if faults.is_empty() => Ok(Mission {
             scenario: scenario.clone(),
@@ -144,6 +149,7 @@ fn finish(
             world,
             drives,
             controller,
+            navigator,
             steps: (scenario.duration_s / scenario.integrator.step_s).round().max(1.0) as u64,
             steps_per_sample: samples(scenario),
         }),

@@ -23,6 +23,11 @@ impl Seat {
         &world.link_frame(self.vehicle, self.link) * &Frame::from(&self.pose_ls)
     }
 
+    /// Its pose in W.
+    pub fn calc_pose(&self, world: &World) -> Pose {
+        self.frame(world).to_pose()
+    }
+
     /// Angular velocity in its axes, rad/s.
     pub fn calc_rate(&self, world: &World) -> Vec3 {
         self.frame(world).rot.tr_mul(&world.link_twist(self.vehicle, self.link).ang)

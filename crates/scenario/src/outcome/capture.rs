@@ -153,6 +153,7 @@ impl CaptureWatch {
 
 fn describe(phase: Phase) -> &'static str {
     match phase {
+        Phase::Acquire => "acquire: navigation makes out the target",
         Phase::Reach => "reach: on the way to the standoff point",
         Phase::Approach => "approach: on the last straight, motion matched",
         Phase::Close => "close: fingers closing",

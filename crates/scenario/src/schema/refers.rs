@@ -18,6 +18,7 @@ pub(super) struct Names<'a> {
     vehicles: Vec<&'a str>,
     actuators: Vec<&'a str>,
     mechanisms: Vec<&'a str>,
+    sensors: Vec<&'a str>,
 }
 
 impl<'a> Names<'a> {
@@ -27,7 +28,13 @@ impl<'a> Names<'a> {
             let nodes = root.child(key).map(Node::list).unwrap_or_default();
             nodes.iter().filter_map(Node::name).collect()
         };
-        Self { root, vehicles: names("vehicle"), actuators: names("actuator"), mechanisms: names("mechanism") }
+        Self {
+            root,
+            vehicles: names("vehicle"),
+            actuators: names("actuator"),
+            mechanisms: names("mechanism"),
+            sensors: names("sensor"),
+        }
     }
 }
 
@@ -37,6 +44,7 @@ pub(super) fn check(checker: &mut Checker<'_>, kind: &str, (node, text): (&Node,
         "vehicle" => known(&checker.names.vehicles, "vehicle", text, path),
         "actuator" => actuator(&checker.names, text, path),
         "mechanism" => known(&checker.names.mechanisms, "mechanism", text, path),
+        "sensor" => known(&checker.names.sensors, "sensor", text, path),
         "vehicle/part" if text == "world" => None,
         "vehicle/part" => part(&checker.names, text, path),
         "pattern" => pattern(&checker.names, text, path),

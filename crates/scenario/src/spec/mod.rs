@@ -16,6 +16,7 @@ mod docking;
 mod effect;
 mod friction;
 mod mechanism;
+mod navigation;
 mod pose;
 mod regress;
 mod sensor;
@@ -36,6 +37,7 @@ pub use friction::{BristleFriction, Dahl, ElastoPlastic, FrictionLaw, LuGre, Reg
 pub use mechanism::{
     Capture, Hold, Latch, Mechanism, MechanismKind, MechanismSide, Overload, PerAxis, Strut, StrutSides, Weld,
 };
+pub use navigation::Navigation;
 pub use pose::{PoseSpec, TwistSpec};
 pub use regress::Margin;
 pub use sensor::{MechanismEnd, Sensor, SensorKind};
@@ -100,6 +102,9 @@ pub struct Scenario {
     /// Guidance and control.
     #[serde(default)]
     pub strategy: Strategy,
+    /// What the strategy knows.
+    #[serde(default, skip_serializing_if = "Navigation::is_absent")]
+    pub navigation: Navigation,
     /// Physics beyond the nominal model.
     #[serde(default, rename = "effect", skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<Effect>,

@@ -1,7 +1,6 @@
 //! Guidance and control: one file per strategy; file-side enum, step-side [`sim::Controller`], joined by one match.
 
 mod free_floating;
-mod predict;
 mod replay;
 mod schedule;
 mod soft_dock;
@@ -27,6 +26,6 @@ pub(crate) fn build(
         Strategy::Schedule(spec) => Some(Box::new(schedule::build(spec, table, model, faults)?)),
         Strategy::Replay(spec) => Some(Box::new(replay::build(scenario, spec, table, model, faults)?)),
         Strategy::SoftDock(spec) => Some(Box::new(soft_dock::build(spec, model, table, faults)?)),
-        Strategy::TrackAndGrasp(spec) => Some(Box::new(track_and_grasp::build(spec, model, table, faults)?)),
+        Strategy::TrackAndGrasp(spec) => Some(Box::new(track_and_grasp::build(scenario, spec, model, table, faults)?)),
     }
 }

@@ -3,7 +3,7 @@
 use super::schedule::Target;
 use crate::build::{ActuatorTable, Faults};
 use crate::spec::{DriveMotion, Replay, Scenario};
-use sim::{Command, Controller, Model, World};
+use sim::{Command, Controller, Known, Model};
 
 /// Plays columns of a recording.
 #[derive(Clone, Debug)]
@@ -88,9 +88,9 @@ fn course(model: &Model, actuator: usize, times: &[f64], values: &[f64]) -> Cour
 }
 
 impl Controller for ReplayPlayer {
-    fn command(&self, world: &World, _: &mut Vec<f64>, commands: &mut [Command]) {
+    fn command(&self, known: &Known<'_>, _: &mut Vec<f64>, commands: &mut [Command]) {
         // Half a step early: a sample's time and a step's may differ by rounding.
-        let now = world.state().time + 0.5 * world.model().step;
+        let now = known.world.state().time + 0.5 * known.world.model().step;
         for course in &self.courses {
             let after = course.times.partition_point(|t| *t <= now);
             if let Some(value) = after.checked_sub(1).or(Some(0)).and_then(|i| course.values.get(i)) {

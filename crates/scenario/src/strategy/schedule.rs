@@ -2,7 +2,7 @@
 
 use crate::build::{ActuatorTable, Faults};
 use crate::spec::Schedule;
-use sim::{ActuatorKind, Command, Controller, Model, World};
+use sim::{ActuatorKind, Command, Controller, Known, Model};
 
 /// Plays courses of commands.
 #[derive(Clone, Debug)]
@@ -60,9 +60,9 @@ pub(super) fn build(
 }
 
 impl Controller for SchedulePlayer {
-    fn command(&self, world: &World, _: &mut Vec<f64>, commands: &mut [Command]) {
+    fn command(&self, known: &Known<'_>, _: &mut Vec<f64>, commands: &mut [Command]) {
         for (actuator, target, course) in &self.courses {
-            target.write(course.value_at(world.state().time), &mut commands[*actuator]);
+            target.write(course.value_at(known.world.state().time), &mut commands[*actuator]);
         }
     }
 }

@@ -5,7 +5,7 @@
 use crate::build::{ActuatorTable, Faults};
 use crate::outcome::calc_base_motion;
 use crate::spec::SoftDock;
-use sim::{ActuatorKind, Command, Controller, MechanismStatus, Model, World};
+use sim::{ActuatorKind, Command, Controller, Known, MechanismStatus, Model, World};
 
 /// Steps between two decisions: nothing here is faster than a latch.
 const PERIOD: u64 = 10;
@@ -62,10 +62,10 @@ impl Controller for SoftDocking {
         PERIOD
     }
 
-    fn command(&self, world: &World, memory: &mut Vec<f64>, commands: &mut [Command]) {
+    fn command(&self, known: &Known<'_>, memory: &mut Vec<f64>, commands: &mut [Command]) {
         memory.resize(2, f64::NAN);
-        let time = world.state().time;
-        if !self.is_at_rest(world) {
+        let time = known.world.state().time;
+        if !known.is_ready || !self.is_at_rest(known.world) {
             memory[0] = f64::NAN;
         } else if memory[0].is_nan() {
             memory[0] = time;

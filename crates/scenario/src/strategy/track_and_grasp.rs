@@ -2,6 +2,7 @@
 //!
 //! | phase | what the tool does | ends when |
 //! | --- | --- | --- |
+//! | acquire | stands | navigation has made out the target; with perfect knowledge there is no such phase |
 //! | reach | quintic to the standoff pose where the target will be, arriving with its velocity | its planned time |
 //! | approach | along the grapple frame's z, in the moving frame | the tool is at the grapple frame |
 //! | close | follows the grapple frame, fingers close at a rate, force limited | every finger presses |
@@ -16,17 +17,19 @@
 //! and starts the approach from there; without `rate_matching` the tool follows positions only.
 
 use super::free_floating::{Arm, RateRequest, calc_bounded_error};
-use super::predict::FreeBody;
 use super::trajectory::{Quintic, calc_rate};
 use crate::build::{ActuatorTable, Faults, solve_pose};
-use crate::spec::TrackAndGrasp;
+use crate::navigation::{FreeBody, Mass};
+use crate::spec::{Scenario, Sensor, SensorKind, TrackAndGrasp};
 use multibody::{JointKind, calc_locked_inertia};
-use sim::{ActuatorKind, Command, Controller, Model, World};
-use spatial::{Frame, Pose, Twist, Vec3};
+use sim::{ActuatorKind, Command, Controller, Known, Model, World};
+use spatial::{Frame, Pose, Rot, Twist, Vec3};
 
 /// Where a capture stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
+    /// Waiting for navigation to make out the target.
+    Acquire,
     /// On the way to the standoff pose.
     Reach,
     /// On the last straight.
@@ -41,7 +44,8 @@ pub enum Phase {
     Abort,
 }
 
-const PHASES: [Phase; 6] = [Phase::Reach, Phase::Approach, Phase::Close, Phase::Damp, Phase::Hold, Phase::Abort];
+const PHASES: [Phase; 7] =
+    [Phase::Acquire, Phase::Reach, Phase::Approach, Phase::Close, Phase::Damp, Phase::Hold, Phase::Abort];
 
 /// Phase of a capture from the controller's memory; `None` before its first call, or of another strategy.
 pub fn phase_of(world: &World) -> Option<Phase> {
@@ -101,7 +105,16 @@ pub(super) struct Grasper {
     grapple: usize,
     drives: Vec<ArmDrive>,
     fingers: Vec<Finger>,
+    pads: Vec<Pad>,
     period_steps: u64,
+}
+
+/// A sensor of what touches a part of the servicer.
+#[derive(Clone, Debug)]
+struct Pad {
+    quantity: String,
+    link: usize,
+    rot_ls: Rot,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -121,6 +134,7 @@ struct Finger {
 }
 
 pub(super) fn build(
+    scenario: &Scenario,
     spec: &TrackAndGrasp,
     model: &Model,
     table: &ActuatorTable,
@@ -146,7 +160,27 @@ pub(super) fn build(
     let v0 = model.vehicles[vehicle].v0;
     let arm = Arm { vehicle, link, coordinates: drives.iter().map(|d| d.v_index - v0).collect() };
     let period_steps = (PERIOD / model.step).round().max(1.0) as u64;
-    Some(Grasper { spec: spec.clone(), arm, target, grapple, drives, fingers, period_steps })
+    let pads = pads_of(scenario, model, vehicle);
+    if pads.is_empty() && !scenario.navigation.perfect {
+        let reason = format!(
+            "says nothing of what \"{}\" touches, and the gripper must feel what it closes on; add a [[sensor]] of kind \
+             contact-force on its pads",
+            spec.servicer
+        );
+        faults.add("sensor", reason);
+    }
+    Some(Grasper { spec: spec.clone(), arm, target, grapple, drives, fingers, pads, period_steps })
+}
+
+/// The sensors of contact that a vehicle carries.
+fn pads_of(scenario: &Scenario, model: &Model, vehicle: usize) -> Vec<Pad> {
+    let pad = |sensor: &Sensor| {
+        let SensorKind::ContactForce { link, pose, .. } = &sensor.kind else { return None };
+        let (owner, link) = model.link(link)?;
+        let quantity = format!("sensor.{}.force", sensor.name);
+        (owner == vehicle).then(|| Pad { quantity, link, rot_ls: pose.pose().rotation })
+    };
+    scenario.sensors.iter().filter_map(pad).collect()
 }
 
 fn frame_of(model: &Model, name: &str, key: &str, faults: &mut Faults<'_>) -> Option<(usize, usize)> {
@@ -222,24 +256,30 @@ impl Controller for Grasper {
         self.period_steps
     }
 
-    fn command(&self, world: &World, memory: &mut Vec<f64>, commands: &mut [Command]) {
+    fn command(&self, known: &Known<'_>, memory: &mut Vec<f64>, commands: &mut [Command]) {
         if memory.is_empty() {
-            self.begin(world, memory);
+            // The drives hold where they stand.
+            memory.resize(slot::JOINTS + 3 * self.drives.len(), 0.0);
         }
-        self.switch_phase(world, memory);
-        match PHASES[memory[slot::PHASE] as usize] {
-            Phase::Reach | Phase::Approach | Phase::Close => self.track(world, memory, commands),
-            Phase::Damp | Phase::Hold | Phase::Abort => self.damp(world, memory, commands),
+        if phase_in(memory) == Phase::Acquire {
+            if !known.is_ready {
+                return;
+            }
+            self.begin(known.world, memory);
         }
-        self.command_fingers(world, memory, commands);
+        self.switch_phase(known, memory);
+        match phase_in(memory) {
+            Phase::Reach | Phase::Approach | Phase::Close => self.track(known, memory, commands),
+            Phase::Damp | Phase::Hold | Phase::Abort | Phase::Acquire => self.damp(known.world, memory, commands),
+        }
+        self.command_fingers(known, memory, commands);
     }
 }
 
 impl Grasper {
     fn begin(&self, world: &World, memory: &mut Vec<f64>) {
         let n = self.drives.len();
-        memory.resize(slot::JOINTS + 3 * n, 0.0);
-        memory[slot::STEADY] = -1.0;
+        self.enter(world, memory, Phase::Reach);
         memory[slot::TOUCHED] = -1.0;
         memory[slot::FELT] = -1.0;
         for (i, drive) in self.drives.iter().enumerate() {
@@ -247,7 +287,7 @@ impl Grasper {
             memory[slot::JOINTS + 2 * n + i] = world.state().q[drive.q_index];
         }
         let arrival = self.choose_arrival(world);
-        memory[slot::ARRIVAL] = arrival;
+        memory[slot::ARRIVAL] = world.state().time + arrival;
         let (end, twist) = self.predict_standoff(world, arrival);
         write_pose(&self.tool(world).to_pose(), &mut memory[slot::START..]);
         write_pose(&end, &mut memory[slot::END..]);
@@ -269,7 +309,7 @@ impl Grasper {
         let (kin, pose) = (world.kinematics(self.target), world.state().bases[self.target]);
         let inertia_w = calc_locked_inertia(kin);
         let back = kin.rot[0].transpose();
-        FreeBody::new(&pose, &kin.vel[0], &inertia_w.transformed(&back, &Vec3::zeros()))
+        Some(FreeBody::new(&pose, &kin.vel[0], Mass::new(&inertia_w.transformed(&back, &Vec3::zeros()))?))
     }
 
     /// Pose and twist of the standoff after `ahead` seconds; without prediction the present pose, at rest.
@@ -330,14 +370,14 @@ impl Grasper {
     /// Where the tool shall be `after` seconds from now, and the frame that it follows.
     fn goal(&self, world: &World, memory: &[f64], after: f64) -> Pose {
         let time = world.state().time + after;
-        if PHASES[memory[slot::PHASE] as usize] == Phase::Reach {
+        if phase_in(memory) == Phase::Reach {
             let end_twist = Twist::new(
                 Vec3::from_column_slice(&memory[slot::END_TWIST..slot::END_TWIST + 3]),
                 Vec3::from_column_slice(&memory[slot::END_TWIST + 3..slot::END_TWIST + 6]),
             );
-            let duration = memory[slot::ARRIVAL];
+            let duration = memory[slot::ARRIVAL] - memory[slot::SINCE];
             let (start, end) = (read_pose(&memory[slot::START..]), read_pose(&memory[slot::END..]));
-            return Quintic { start, end, end_twist, duration }.pose(time);
+            return Quintic { start, end, end_twist, duration }.pose(time - memory[slot::SINCE]);
         }
         let run = time - memory[slot::ARRIVAL];
         let left = (self.spec.standoff_m - self.spec.approach_speed_m_per_s * run).max(0.0);
@@ -356,11 +396,12 @@ impl Grasper {
         )
     }
 
-    fn track(&self, world: &World, memory: &mut [f64], commands: &mut [Command]) {
+    fn track(&self, known: &Known<'_>, memory: &mut [f64], commands: &mut [Command]) {
+        let world = known.world;
         let tool = self.tool(world);
         let goal = self.goal(world, memory, 0.0);
         let lead = calc_rate(&goal, &self.goal(world, memory, 1e-3), 1e-3);
-        self.feel(world, memory);
+        self.feel(known, memory);
         let felt = memory[slot::FELT] >= 0.0;
         // Two hands on one bar: what the fingers settle between them, position control may not fight.
         let error = if felt { Twist::default() } else { calc_bounded_error(&tool, &goal, LONGEST) };
@@ -381,12 +422,12 @@ impl Grasper {
     }
 
     /// Notes the first touch of the closing fingers.
-    fn feel(&self, world: &World, memory: &mut [f64]) {
-        let closing = PHASES[memory[slot::PHASE] as usize] == Phase::Close;
+    fn feel(&self, known: &Known<'_>, memory: &mut [f64]) {
+        let closing = phase_in(memory) == Phase::Close;
         if closing && memory[slot::FELT] < 0.0 {
-            let [plus, minus] = self.calc_presses(world);
+            let [plus, minus] = self.calc_presses(known);
             if plus + minus > TOUCH {
-                memory[slot::FELT] = world.state().time;
+                memory[slot::FELT] = known.world.state().time;
             }
         }
     }
@@ -394,7 +435,7 @@ impl Grasper {
     fn write_references(&self, world: &World, memory: &mut [f64], commands: &mut [Command], rates: &[f64]) {
         let period = self.period_steps as f64 * world.model().step;
         // Once the fingers feel the bar and until they hold it, the arm gives way: its references go with it.
-        let yields = PHASES[memory[slot::PHASE] as usize] == Phase::Close && memory[slot::FELT] >= 0.0;
+        let yields = phase_in(memory) == Phase::Close && memory[slot::FELT] >= 0.0;
         let leash = if yields { YIELDING_LEASH } else { LEASH };
         for (i, (drive, rate)) in self.drives.iter().zip(rates).enumerate() {
             let position = world.state().q[drive.q_index];
@@ -412,7 +453,7 @@ impl Grasper {
     fn damp(&self, world: &World, memory: &mut [f64], commands: &mut [Command]) {
         let (n, length) = (self.drives.len(), 3.0 * self.spec.damping_time_s);
         let s = ((world.state().time - memory[slot::SINCE]) / length).clamp(0.0, 1.0);
-        let left = match PHASES[memory[slot::PHASE] as usize] {
+        let left = match phase_in(memory) {
             Phase::Damp => 0.5 * (1.0 + (std::f64::consts::PI * s).cos()),
             _ => 0.0,
         };
@@ -421,10 +462,11 @@ impl Grasper {
     }
 
     /// Fingers close at their rate; once they touch from both sides the force rises to the squeeze.
-    fn command_fingers(&self, world: &World, memory: &mut [f64], commands: &mut [Command]) {
-        let closes = matches!(PHASES[memory[slot::PHASE] as usize], Phase::Close | Phase::Damp | Phase::Hold);
+    fn command_fingers(&self, known: &Known<'_>, memory: &mut [f64], commands: &mut [Command]) {
+        let world = known.world;
+        let closes = matches!(phase_in(memory), Phase::Close | Phase::Damp | Phase::Hold);
         let time = world.state().time;
-        if closes && memory[slot::TOUCHED] < 0.0 && self.calc_press(world) > TOUCH {
+        if closes && memory[slot::TOUCHED] < 0.0 && self.calc_press(known) > TOUCH {
             memory[slot::TOUCHED] = time;
         }
         let rise = if memory[slot::TOUCHED] < 0.0 { 0.0 } else { ((time - memory[slot::TOUCHED]) / RISE).min(1.0) };
@@ -440,10 +482,11 @@ impl Grasper {
         }
     }
 
-    fn switch_phase(&self, world: &World, memory: &mut [f64]) {
+    fn switch_phase(&self, known: &Known<'_>, memory: &mut [f64]) {
+        let world = known.world;
         let time = world.state().time;
-        let phase = PHASES[memory[slot::PHASE] as usize];
-        let ready = self.is_phase_over(world, memory, phase);
+        let phase = phase_in(memory);
+        let ready = self.is_phase_over(known, memory, phase);
         if !ready {
             memory[slot::STEADY] = -1.0;
         } else if memory[slot::STEADY] < 0.0 {
@@ -456,6 +499,7 @@ impl Grasper {
             self.enter(world, memory, Phase::Abort);
         } else if ready && time - memory[slot::STEADY] >= settle {
             let next = match phase {
+                Phase::Acquire => Phase::Reach,
                 Phase::Reach => Phase::Approach,
                 Phase::Approach => Phase::Close,
                 Phase::Close => Phase::Damp,
@@ -478,8 +522,10 @@ impl Grasper {
         memory[slot::STEADY] = -1.0;
     }
 
-    fn is_phase_over(&self, world: &World, memory: &[f64], phase: Phase) -> bool {
+    fn is_phase_over(&self, known: &Known<'_>, memory: &[f64], phase: Phase) -> bool {
+        let world = known.world;
         match phase {
+            Phase::Acquire => known.is_ready,
             Phase::Reach => world.state().time >= memory[slot::ARRIVAL],
             Phase::Approach => {
                 let there = world.state().time >= memory[slot::ARRIVAL] + self.approach_time();
@@ -489,39 +535,58 @@ impl Grasper {
                     && shift.norm() < self.spec.close_distance_m
                     && turn.norm() < self.spec.close_angle_deg.to_radians()
             }
-            Phase::Close => self.fingers_press(world),
+            Phase::Close => self.calc_press(known) > CLOSED * self.spec.closing_force_n,
             Phase::Damp => world.state().time - memory[slot::SINCE] > 3.0 * self.spec.damping_time_s,
             Phase::Hold | Phase::Abort => false,
         }
     }
 
-    fn fingers_press(&self, world: &World) -> bool {
-        self.calc_press(world) > CLOSED * self.spec.closing_force_n
-    }
-
     /// The smaller of the forces that press the target from the two sides, N.
-    fn calc_press(&self, world: &World) -> f64 {
-        let [plus, minus] = self.calc_presses(world);
+    fn calc_press(&self, known: &Known<'_>) -> f64 {
+        let [plus, minus] = self.calc_presses(known);
         plus.min(minus)
     }
 
-    /// Forces on the target along the closing axis, by sign, N.
-    fn calc_presses(&self, world: &World) -> [f64; 2] {
-        let axis = self.tool(world).rot.column(1).into_owned();
+    /// Forces on the target along the closing axis, by sign, N: what touches it, or what the pads' sensors say.
+    fn calc_presses(&self, known: &Known<'_>) -> [f64; 2] {
+        let axis = self.tool(known.world).rot.column(1).into_owned();
+        let forces = if known.is_perfect { self.find_touches(known.world) } else { self.read_pads(known) };
         let (mut plus, mut minus) = (0.0, 0.0);
-        for touch in world.touches() {
-            let (a, b) = world.model().pair_bodies(touch.pair);
-            let vehicle = |body: usize| world.model().owners.get(body).map(|o| o.0);
-            let on_target = match (vehicle(a), vehicle(b)) {
-                (Some(s), Some(t)) if s == self.arm.vehicle && t == self.target => touch.force_w,
-                (Some(t), Some(s)) if s == self.arm.vehicle && t == self.target => -touch.force_w,
-                _ => continue,
-            };
-            let along = on_target.dot(&axis);
+        for force in forces {
+            let along = force.dot(&axis);
             if along > 0.0 { plus += along } else { minus -= along }
         }
         [plus, minus]
     }
+
+    /// Forces between servicer and target, on the target, W axes, N.
+    fn find_touches(&self, world: &World) -> Vec<Vec3> {
+        let vehicle = |body: usize| world.model().owners.get(body).map(|o| o.0);
+        let on_target = |touch: sim::TouchReport| {
+            let (a, b) = world.model().pair_bodies(touch.pair);
+            match (vehicle(a), vehicle(b)) {
+                (Some(s), Some(t)) if s == self.arm.vehicle && t == self.target => Some(touch.force_w),
+                (Some(t), Some(s)) if s == self.arm.vehicle && t == self.target => Some(-touch.force_w),
+                _ => None,
+            }
+        };
+        world.touches().filter_map(on_target).collect()
+    }
+
+    /// What the servicer's sensors of contact say presses the target, W axes, N.
+    fn read_pads(&self, known: &Known<'_>) -> Vec<Vec3> {
+        let on_target = |pad: &Pad| {
+            let said = known.find(&pad.quantity)?;
+            let force = pad.rot_ls * Vec3::from_column_slice(&said.value[..3]);
+            Some(-(known.world.link_frame(self.arm.vehicle, pad.link).rot * force))
+        };
+        self.pads.iter().filter_map(on_target).collect()
+    }
+}
+
+/// The phase that a memory stands in.
+fn phase_in(memory: &[f64]) -> Phase {
+    PHASES[memory[slot::PHASE] as usize]
 }
 
 fn write_pose(pose: &Pose, memory: &mut [f64]) {
