@@ -21,6 +21,7 @@ pub(crate) fn document(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict
     add("scenario", json!(scenario.name));
     add("version", json!(env!("CARGO_PKG_VERSION")));
     add("seed", json!(scenario.seed));
+    add("strategy_knows", json!(mission.knowledge()));
     add("outcome", json!(outcome.outcome));
     add("reason", json!(outcome.reason));
     add("metrics", Value::Object(outcome.metrics_json()));
@@ -47,6 +48,9 @@ pub(crate) fn document(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict
 /// The summary as Markdown, for the viewer.
 pub(crate) fn markdown(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict]) -> String {
     let mut text = format!("# {}\n\n**{}**: {}\n\n", mission.scenario.name, outcome.outcome, outcome.reason);
+    if let Some(knowledge) = mission.knowledge() {
+        text += &format!("The strategy knew {knowledge}.\n\n");
+    }
     for verdict in verdicts {
         text += &format!("- {}{}\n", if verdict.met { "" } else { "**not as expected:** " }, verdict.text);
     }
@@ -83,6 +87,9 @@ pub(crate) fn print(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict], 
         simulated,
         simulated / clock.wall_s
     );
+    if let Some(knowledge) = mission.knowledge() {
+        println!("  The strategy knew {knowledge}.");
+    }
     for warning in &outcome.warnings {
         println!("  warning: {warning}");
     }

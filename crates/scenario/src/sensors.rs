@@ -15,10 +15,10 @@ mod parts;
 
 pub(crate) use parts::{Part, parts_of};
 
+use crate::ScenarioError;
 use crate::effects::SENSOR_DELAY;
 use crate::measure::{Gauge, Quantity, Reading, SensorModel};
 use crate::spec::{Scenario, Sensor as SensorSpec};
-use crate::ScenarioError;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -220,7 +220,8 @@ impl Sensor {
         }
         let oldest = memory[slot::OLDEST] as usize;
         let parcel = &memory[slot::SENT + PARCEL * oldest..][..PARCEL];
-        let arrival = Arrival { taken: parcel[0], arrives: parcel[1], value: [parcel[2], parcel[3], parcel[4], parcel[5]] };
+        let arrival =
+            Arrival { taken: parcel[0], arrives: parcel[1], value: [parcel[2], parcel[3], parcel[4], parcel[5]] };
         if arrival.arrives > world.state().time + ROUNDING * world.model().step {
             return None;
         }

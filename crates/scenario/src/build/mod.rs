@@ -67,6 +67,25 @@ impl std::fmt::Debug for Mission {
     }
 }
 
+impl Mission {
+    /// What stands between world and controller: sensors, and what navigation makes of them; none where the strategy knows the truth, or asks for nothing.
+    /// For worlds that take over from the mission's ([`World::perceive`]).
+    pub fn perception(&self) -> Option<Arc<dyn sim::Perception>> {
+        self.navigator.clone().map(|known| known as Arc<dyn sim::Perception>)
+    }
+
+    /// What the strategy knows, in words; none where it does not ask where things are.
+    pub fn knowledge(&self) -> Option<&'static str> {
+        let filter = self.scenario.navigation.filter;
+        match (&self.navigator, navigation::steers_by_sight(&self.scenario)) {
+            (_, false) => None,
+            (None, true) => Some("the truth (navigation.perfect)"),
+            (Some(_), true) if filter => Some("what its sensors say, the target through a filter"),
+            (Some(_), true) => Some("what its sensors say, the target as the camera last saw it"),
+        }
+    }
+}
+
 /// Builds the world and the plan of a scenario; refused if its shapes stand inside each other at t = 0.
 pub fn build(scenario: &Scenario) -> Result<Mission, ScenarioErrors> {
     let mission = build_from(scenario, &Stock::default())?;
@@ -140,21 +159,19 @@ fn finish(
     missing::check_freedoms(&world, &files.warnings, &mut faults);
     let controller = strategy::build(scenario, model, table, &mut faults);
     let navigator = navigation::build(scenario, &world, &mut faults).map(Arc::new);
+    let Some(controller) = controller.filter(|_| faults.is_empty()) else { return Err(faults.into_errors()) };
     world.perceive(navigator.clone().map(|known| known as Arc<dyn sim::Perception>));
-    match controller {
-        Some(controller) if faults.is_empty() => Ok(Mission {
-            scenario: scenario.clone(),
-            robots: files.robots,
-            robot_warnings: files.warnings,
-            world,
-            drives,
-            controller,
-            navigator,
-            steps: (scenario.duration_s / scenario.integrator.step_s).round().max(1.0) as u64,
-            steps_per_sample: samples(scenario),
-        }),
-        _ => Err(faults.into_errors()),
-    }
+    Ok(Mission {
+        scenario: scenario.clone(),
+        robots: files.robots,
+        robot_warnings: files.warnings,
+        world,
+        drives,
+        controller,
+        navigator,
+        steps: (scenario.duration_s / scenario.integrator.step_s).round().max(1.0) as u64,
+        steps_per_sample: samples(scenario),
+    })
 }
 
 fn samples(scenario: &Scenario) -> u64 {

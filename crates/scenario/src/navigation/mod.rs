@@ -30,10 +30,10 @@ use spatial::{Pose, Rot, Twist, Vec3, log_rotation, nalgebra};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Numbers of what a sensor said last: the stamp, the arrival, four of the reading; the stamp is not a number before the first.
+/// Numbers of what a sensor said last: the stamp, the arrival, four of the reading; before the first the stamp is negative.
 const SAID: usize = 6;
-/// Least errors of a camera that says it has none: m, rad.
-const FINEST: [f64; 2] = [1e-5, 1e-5];
+/// Least errors of a pose that a filter allows for: m, rad. A finer camera is on a vehicle that does not know so well where it is itself.
+const FINEST: [f64; 2] = [1e-3, 1e-3];
 
 /// Sensors, and what is made of them.
 #[derive(Debug)]
@@ -128,7 +128,7 @@ pub(crate) fn build(scenario: &Scenario, world: &World, faults: &mut Faults<'_>)
 }
 
 /// Whether a strategy asks where things are.
-fn steers_by_sight(scenario: &Scenario) -> bool {
+pub(crate) fn steers_by_sight(scenario: &Scenario) -> bool {
     use crate::spec::Strategy;
     match scenario.strategy {
         Strategy::TrackAndGrasp(_) | Strategy::SoftDock(_) => true,
@@ -171,7 +171,7 @@ impl Navigator {
     /// What a sensor said last: stamp, and reading.
     fn said<'a>(&self, memory: &'a [f64], sensor: usize) -> Option<(f64, &'a [f64])> {
         let said = &memory[self.said + SAID * sensor..][..SAID];
-        said[0].is_finite().then(|| (said[0], &said[2..]))
+        (said[0] >= 0.0).then(|| (said[0], &said[2..]))
     }
 
     fn measured<'a>(&'a self, memory: &[f64]) -> Vec<Measured<'a>> {
@@ -179,7 +179,7 @@ impl Navigator {
             let said = &memory[self.said + SAID * k..][..SAID];
             let value = [said[2], said[3], said[4], said[5]];
             let quantity = self.sensors[k].name();
-            said[0].is_finite().then_some(Measured { quantity, taken: said[0], arrived: said[1], value })
+            (said[0] >= 0.0).then_some(Measured { quantity, taken: said[0], arrived: said[1], value })
         };
         (0..self.sensors.len()).filter_map(told).collect()
     }
@@ -197,7 +197,8 @@ impl Navigator {
         let quaternion = nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]);
         let seen_c = Pose::from_parts(Vec3::new(p[0], p[1], p[2]).into(), Rot::new_normalize(quaternion));
         // Where the camera was at the stamp; one that takes poses for present ones does not ask.
-        let camera = if self.target.is_filtered { self.own.camera_at(memory, stamp) } else { self.own.camera_now(memory) };
+        let camera =
+            if self.target.is_filtered { self.own.camera_at(memory, stamp) } else { self.own.camera_now(memory) };
         let Some(camera) = camera else { return };
         let seen = camera * seen_c;
         let mass = self.target.filter.mass;
@@ -238,8 +239,8 @@ impl Navigator {
         let (true_own, vehicle) = (truth.state().bases[self.own.vehicle], self.target.vehicle);
         let told = own.inverse() * body.pose();
         let is = true_own.inverse() * truth.state().bases[vehicle];
-        let spins = own.rotation.inverse() * body.spin()
-            - true_own.rotation.inverse() * truth.kinematics(vehicle).vel[0].ang;
+        let spins =
+            own.rotation.inverse() * body.spin() - true_own.rotation.inverse() * truth.kinematics(vehicle).vel[0].ang;
         let apart = told.translation.vector - is.translation.vector;
         Some([apart.norm(), log_rotation(&(told.rotation.inverse() * is.rotation)).norm(), spins.norm()])
     }
@@ -291,7 +292,7 @@ impl Perception for Navigator {
     fn sense(&self, world: &World, memory: &mut Vec<f64>) {
         if memory.is_empty() {
             memory.resize(self.len, 0.0);
-            (0..self.sensors.len()).for_each(|k| memory[self.said + SAID * k] = f64::NAN);
+            (0..self.sensors.len()).for_each(|k| memory[self.said + SAID * k] = -1.0);
         }
         for (k, sensor) in self.sensors.iter().enumerate() {
             let own = self.memory_of(k);

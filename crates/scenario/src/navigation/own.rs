@@ -46,7 +46,7 @@ struct OwnJoint {
 
 /// Places in its memory, from its beginning.
 mod slot {
-    /// When it was written last, s; not a number: never.
+    /// When it was written last, s.
     pub(super) const TIME: usize = 0;
     /// Base: position (3), quaternion (4), velocity (3), angular velocity (3), W axes.
     pub(super) const POSE: usize = 1;
@@ -83,7 +83,9 @@ pub(super) fn build(
                 tachometer: reads(Quantity::JointVelocity(coordinate)),
             }),
             None => {
-                let reason = format!("needs a [[sensor]] of kind joint-encoder at \"{name}/{joint}\", a joint of the vehicle that navigates");
+                let reason = format!(
+                    "needs a [[sensor]] of kind joint-encoder at \"{name}/{joint}\", a joint of the vehicle that navigates"
+                );
                 faults.add("navigation.camera", reason);
             }
         }
