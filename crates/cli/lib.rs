@@ -4,15 +4,13 @@
 //! [`lab`] < [`scenario`] < [`campaign`] < [`diagnose`] < [`score`]. How to use them stands in the [`guide`].
 //!
 //! ```no_run
-//! use softdock::{scenario, sim};
+//! use softdock::scenario;
 //! let file = std::path::Path::new("scenarios/tumbling-capture.toml");
 //! let scenario = scenario::load(file, &["contact[0].friction.mu=0.02".into()])?;
-//! let mut mission = scenario::build(&scenario)?;
-//! let mut judge = scenario::outcome::Judge::new(&mission);
-//! let ended = mission.world.run(mission.steps, &*mission.controller, &mut [&mut judge as &mut dyn sim::Observer]);
-//! let outcome = judge.conclude(&mission.world, &ended);
-//! println!("{}: {}", outcome.outcome, outcome.reason);
-//! # Ok::<(), scenario::ScenarioErrors>(())
+//! let mission = scenario::build(&scenario)?;
+//! let done = scenario::run(mission, None, &mut [])?; // a recorder; observers of your own
+//! println!("{}: {}", done.outcome.outcome, done.outcome.reason);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 pub mod guide;

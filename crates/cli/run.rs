@@ -5,11 +5,10 @@ use crate::summary::{self, Clock};
 use crate::{Status, check, live};
 use anyhow::Context;
 use softdock::record::{self, Log, OutputFolder, Recorder, SampleSink, Scene};
-use softdock::scenario::outcome::{Judge, check_expectations};
 use softdock::scenario::recording::{recorder_plan, scene};
 use softdock::scenario::spec::{IntegratorKind, Strategy};
-use softdock::scenario::{self, Mission, RigLog};
-use softdock::sim::{Observer, StepError};
+use softdock::scenario::{self, Finished, Mission, RigLog};
+use softdock::sim::Observer;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -74,7 +73,7 @@ enum Format {
 
 /// Runs, writes, judges.
 pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
-    let mut mission = load(arguments)?;
+    let mission = load(arguments)?;
     if !arguments.quiet {
         check::hints(&mission);
         hint_at_loss(arguments, &mission);
@@ -84,30 +83,23 @@ pub(crate) fn main(arguments: &Arguments) -> anyhow::Result<Status> {
     let scene = scene(&mission);
     let plan = recorder_plan(&mission, &scene)?;
     let mut viewer = live::open(arguments, &plan, &mission, &scene)?;
-    let mut recorder = Recorder::new(&mission.world, plan, viewer.as_mut().map(|v| v as &mut dyn SampleSink));
-    let mut judge = Judge::new(&mission);
+    let recorder = Recorder::new(&mission.world, plan, viewer.as_mut().map(|v| v as &mut dyn SampleSink));
     let mut rig = arguments.record.is_some().then(|| RigLog::new(&mission)).transpose()?;
     let mut progress = Progress::new(mission.steps, arguments.quiet);
     let started = Instant::now();
-    let ended = {
-        let mut observers: Vec<&mut dyn Observer> = vec![&mut judge, &mut recorder, &mut progress];
+    let done = {
+        let mut observers: Vec<&mut dyn Observer> = vec![&mut progress];
         observers.extend(rig.as_mut().map(|rig| rig as &mut dyn Observer));
-        mission.world.run(mission.steps, &*mission.controller, &mut observers)
+        scenario::run(mission, Some(recorder), &mut observers)?
     };
     let clock = Clock { wall_s: started.elapsed().as_secs_f64() };
     progress.finish();
-    if let Some(error) = recorder.error.take() {
-        return Err(error.into());
-    }
     match (&arguments.record, rig) {
-        (Some(folder), Some(rig)) if ended.is_ok() => append(arguments, folder, rig)?,
+        (Some(folder), Some(rig)) if done.ended.is_ok() => append(arguments, folder, rig)?,
         (Some(folder), _) => eprintln!("not recorded in {}: the run did not come to its end", folder.display()),
         (None, _) => {}
     }
-    let log = std::mem::take(&mut recorder.log);
-    drop(recorder);
-    let run = Finished { mission, folder, scene, clock };
-    conclude(arguments, run, log, (judge, &ended), viewer)
+    conclude(arguments, done, Place { folder, scene, clock }, viewer)
 }
 
 /// A recording is as exact as its integrator.
@@ -143,9 +135,8 @@ fn append(arguments: &Arguments, folder: &Path, rig: RigLog) -> anyhow::Result<(
     Ok(())
 }
 
-/// A run that is over.
-struct Finished {
-    mission: Mission,
+/// Where a run's files go, and what is seen in them.
+struct Place {
     folder: OutputFolder,
     scene: Scene,
     clock: Clock,
@@ -153,22 +144,19 @@ struct Finished {
 
 fn conclude(
     arguments: &Arguments,
-    run: Finished,
-    mut log: Log,
-    (judge, ended): (Judge, &Result<(), StepError>),
+    mut done: Finished,
+    place: Place,
     viewer: Option<live::Viewer>,
 ) -> anyhow::Result<Status> {
-    let outcome = judge.conclude(&run.mission.world, ended);
-    let verdicts = check_expectations(&run.mission.scenario.expects, &outcome);
-    log.events.clone_from(&outcome.events);
-    let text = summary::markdown(&run.mission, &outcome, &verdicts);
-    live::finish(viewer, &outcome, &text)?;
-    write_files(arguments, &run, &log, &text)?;
-    let document = summary::document(&run.mission, &outcome, &verdicts);
+    let log = done.log.take().unwrap_or_default();
+    let text = summary::markdown(&done);
+    live::finish(viewer, &done.outcome, &text)?;
+    write_files(arguments, &place, &log, &text)?;
+    let document = summary::document(&done);
     if !arguments.quiet {
-        summary::print(&run.mission, &outcome, &verdicts, run.clock);
+        summary::print(&done, place.clock);
     }
-    let place = run.folder.finish(&document)?;
+    let place = place.folder.finish(&document)?;
     if !arguments.quiet {
         let viewer = if place.join("run.rrd").exists() {
             format!("; see it with: rerun {}/run.rrd", place.display())
@@ -177,21 +165,22 @@ fn conclude(
         };
         println!("\n  The results are in {}{viewer}", place.display());
     }
-    if ended.is_err() {
-        return Ok(Status::Diverged);
-    }
-    Ok(if verdicts.iter().all(|v| v.met) { Status::AsExpected } else { Status::NotAsExpected })
+    Ok(match &done.ended {
+        Err(_) => Status::Diverged,
+        Ok(()) if done.is_as_expected() => Status::AsExpected,
+        Ok(()) => Status::NotAsExpected,
+    })
 }
 
-fn write_files(arguments: &Arguments, run: &Finished, log: &Log, text: &str) -> anyhow::Result<()> {
-    let folder = &run.folder;
+fn write_files(arguments: &Arguments, place: &Place, log: &Log, text: &str) -> anyhow::Result<()> {
+    let folder = &place.folder;
     record::write_parquet(&folder.file("signals.parquet"), &log.meta, &log.signals)?;
     record::write_file(&folder.file("signals.svg"), record::plot::plot_svg(log).as_bytes())?;
     #[cfg(feature = "rerun")]
     if !arguments.no_rrd {
-        record::rerun_sink::write_rrd(&folder.file("run.rrd"), log, &run.scene, text)?;
+        record::rerun_sink::write_rrd(&folder.file("run.rrd"), log, &place.scene, text)?;
     }
-    let _ = (arguments, &run.scene, text);
+    let _ = (arguments, &place.scene, text);
     Ok(())
 }
 

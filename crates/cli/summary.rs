@@ -1,8 +1,7 @@
 //! What a person reads after a run, and `summary.json`.
 
 use serde_json::{Map, Value, json};
-use softdock::scenario::Mission;
-use softdock::scenario::outcome::{Outcome, Verdict};
+use softdock::scenario::Finished;
 use softdock::sim::Integrator;
 
 /// Wall-clock figures of a run; no part of its result.
@@ -13,7 +12,8 @@ pub(crate) struct Clock {
 }
 
 /// The content of `summary.json`.
-pub(crate) fn document(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict]) -> Map<String, Value> {
+pub(crate) fn document(done: &Finished) -> Map<String, Value> {
+    let Finished { mission, outcome, verdicts, .. } = done;
     let scenario = &mission.scenario;
     let work = mission.world.state().work;
     let mut map = Map::new();
@@ -46,7 +46,8 @@ pub(crate) fn document(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict
 }
 
 /// The summary as Markdown, for the viewer.
-pub(crate) fn markdown(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict]) -> String {
+pub(crate) fn markdown(done: &Finished) -> String {
+    let Finished { mission, outcome, verdicts, .. } = done;
     let mut text = format!("# {}\n\n**{}**: {}\n\n", mission.scenario.name, outcome.outcome, outcome.reason);
     if let Some(knowledge) = mission.knowledge() {
         text += &format!("The strategy knew {knowledge}.\n\n");
@@ -65,7 +66,8 @@ pub(crate) fn markdown(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict
 }
 
 /// Prints the table.
-pub(crate) fn print(mission: &Mission, outcome: &Outcome, verdicts: &[Verdict], clock: Clock) {
+pub(crate) fn print(done: &Finished, clock: Clock) {
+    let Finished { mission, outcome, verdicts, .. } = done;
     println!("\n{}: {}", outcome.outcome.to_uppercase(), outcome.reason);
     println!();
     for event in &outcome.events {

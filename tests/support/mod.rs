@@ -1,9 +1,8 @@
 //! Loading and running scenarios in tests.
 #![allow(dead_code, clippy::unwrap_used)]
 
-use softdock::scenario::outcome::{Judge, Outcome};
+use softdock::scenario::outcome::Outcome;
 use softdock::scenario::{self, Mission, Scenario};
-use softdock::sim::Observer;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -38,11 +37,9 @@ pub fn load(name: &str, overrides: &[&str]) -> Scenario {
 
 /// Runs a scenario to its end.
 pub fn run(spec: &Scenario) -> (Mission, Outcome) {
-    let mut mission = scenario::build(spec).unwrap_or_else(|e| panic!("{e}"));
-    let mut judge = Judge::new(&mission);
-    let ended = mission.world.run(mission.steps, &*mission.controller, &mut [&mut judge as &mut dyn Observer]);
-    let outcome = judge.conclude(&mission.world, &ended);
-    (mission, outcome)
+    let mission = scenario::build(spec).unwrap_or_else(|e| panic!("{e}"));
+    let done = scenario::run(mission, None, &mut []).unwrap_or_else(|e| panic!("{e}"));
+    (done.mission, done.outcome)
 }
 
 /// SplitMix64: the same draws on every machine.

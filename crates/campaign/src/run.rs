@@ -3,12 +3,10 @@
 use crate::error::CampaignError;
 use crate::plan::Plan;
 use crate::row::Row;
-use record::{Event, EventKind, Log, Recorder};
-use scenario::outcome::{Judge, Outcome, check_expectations};
+use record::{Log, Recorder};
 use scenario::recording::{recorder_plan, scene};
 use scenario::{Mission, glob_matches};
 use serde_json::{Map, Value, json};
-use sim::{Observer, StepError};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
@@ -53,7 +51,7 @@ fn attempt(plan: &Plan, run: u64, keep: Keep, started: Instant) -> Finished {
         let recorder = (keep != Keep::Nothing).then(|| recorder_of(plan, &mission, keep)).transpose()?;
         Ok((mission, drawn, recorder))
     });
-    let (mut mission, drawn, mut recorder) = match built {
+    let (mission, drawn, recorder) = match built {
         Ok(built) => built,
         Err(error) => {
             let row = failed(plan, run, "unbuildable", one_line(&error));
@@ -61,17 +59,17 @@ fn attempt(plan: &Plan, run: u64, keep: Keep, started: Instant) -> Finished {
         }
     };
     let applied = plan.read_back(&mission);
-    let mut judge = Judge::new(&mission);
     let before = started.elapsed().as_secs_f64();
-    let ended = {
-        let mut observers: Vec<&mut dyn Observer> = vec![&mut judge];
-        observers.extend(recorder.as_mut().map(|r| r as &mut dyn Observer));
-        mission.world.run(mission.steps, &*mission.controller, &mut observers)
-    };
-    let outcome = judge.conclude(&mission.world, &ended);
-    let log = recorder.map(|r| with_events(r.log, &outcome, &ended));
-    let row = row_of(&mission, (run, drawn, applied), &outcome);
-    Finished { row, log, wall_s: [0.0, before] }
+    match scenario::run(mission, recorder, &mut []) {
+        Ok(done) => {
+            let row = row_of(&done, (run, drawn, applied));
+            Finished { row, log: done.log, wall_s: [0.0, before] }
+        }
+        Err(error) => {
+            let row = failed(plan, run, "unrecorded", error.to_string());
+            Finished { row, log: None, wall_s: [0.0, before] }
+        }
+    }
 }
 
 fn recorder_of(plan: &Plan, mission: &Mission, keep: Keep) -> Result<Recorder<'static>, CampaignError> {
@@ -84,18 +82,8 @@ fn recorder_of(plan: &Plan, mission: &Mission, keep: Keep) -> Result<Recorder<'s
     Ok(Recorder::new(&mission.world, recording, None))
 }
 
-fn with_events(mut log: Log, outcome: &Outcome, ended: &Result<(), StepError>) -> Log {
-    log.events.clone_from(&outcome.events);
-    if let Err(error) = ended {
-        let (t, text) = (log.signals.times.last().copied().unwrap_or(0.0), error.to_string());
-        log.events.push(Event { t, step: 0, kind: EventKind::Loss, text });
-    }
-    log
-}
-
-fn row_of(mission: &Mission, (run, inputs, applied): (u64, Vec<f64>, Vec<Option<f64>>), outcome: &Outcome) -> Row {
-    let verdicts = check_expectations(&mission.scenario.expects, outcome);
-    let work = mission.world.state().work;
+fn row_of(done: &scenario::Finished, (run, inputs, applied): (u64, Vec<f64>, Vec<Option<f64>>)) -> Row {
+    let work = done.work();
     let counters = json!({
         "steps": work.steps,
         "rate_evaluations": work.rate_evaluations,
@@ -105,13 +93,13 @@ fn row_of(mission: &Mission, (run, inputs, applied): (u64, Vec<f64>, Vec<Option<
     });
     Row {
         run,
-        seed: mission.scenario.seed,
+        seed: done.mission.scenario.seed,
         inputs,
         applied,
-        outcome: outcome.outcome.to_owned(),
-        reason: outcome.reason.clone(),
-        unmet: verdicts.into_iter().filter(|v| !v.met).map(|v| v.text).collect(),
-        metrics: outcome.metrics_json(),
+        outcome: done.outcome.outcome.to_owned(),
+        reason: done.outcome.reason.clone(),
+        unmet: done.verdicts.iter().filter(|v| !v.met).map(|v| v.text.clone()).collect(),
+        metrics: done.outcome.metrics_json(),
         work: counters.as_object().cloned().unwrap_or_default(),
     }
 }

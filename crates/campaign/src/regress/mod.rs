@@ -19,11 +19,9 @@ use crate::plan::Plan;
 use crate::row::Row;
 use crate::run::{Keep, make};
 use record::Recorder;
-use scenario::outcome::Judge;
 use scenario::recording::{recorder_plan, scene};
 use scenario::{Mission, Scenario};
 use serde_json::{Map, Value};
-use sim::Observer;
 use std::path::Path;
 use std::sync::Mutex;
 
@@ -35,15 +33,10 @@ const CURVES: [&str; 5] =
 
 /// Runs a scenario and says what it shows now, in the form of a baseline without history.
 pub fn measure(scenario: &Scenario) -> Result<Baseline, CampaignError> {
-    let mut mission = scenario::build(scenario)?;
-    let mut recorder = recorder(&mission)?;
-    let mut judge = Judge::new(&mission);
-    let ended = {
-        let observers: &mut [&mut dyn Observer] = &mut [&mut judge, &mut recorder];
-        mission.world.run(mission.steps, &*mission.controller, observers)
-    };
-    let outcome = judge.conclude(&mission.world, &ended);
-    let work = mission.world.state().work;
+    let mission = scenario::build(scenario)?;
+    let recorder = recorder(&mission)?;
+    let done = scenario::run(mission, Some(recorder), &mut [])?;
+    let work = done.work();
     let counters = [
         ("steps", work.steps),
         ("rate_evaluations", work.rate_evaluations),
@@ -56,11 +49,11 @@ pub fn measure(scenario: &Scenario) -> Result<Baseline, CampaignError> {
     }
     Ok(Baseline {
         scenario: scenario.name.clone(),
-        outcome: outcome.outcome.to_owned(),
-        metrics: outcome.metrics_json(),
+        outcome: done.outcome.outcome.to_owned(),
+        metrics: done.outcome.metrics_json(),
         work: counters.into_iter().map(|(name, n)| (name.to_owned(), Value::from(n))).collect(),
         mutations,
-        curves: Curves::of(&recorder.log),
+        curves: done.log.as_ref().map(Curves::of).unwrap_or_default(),
         ..Baseline::default()
     })
 }
@@ -70,10 +63,8 @@ fn mutated(scenario: &Scenario, set: &[String]) -> Result<String, CampaignError>
     let source = &scenario.source;
     let overrides: Vec<String> = source.overrides().iter().chain(set).cloned().collect();
     let changed = scenario::parse(source.text(), source.file(), &overrides)?;
-    let mut mission = scenario::build(&changed)?;
-    let mut judge = Judge::new(&mission);
-    let ended = mission.world.run(mission.steps, &*mission.controller, &mut [&mut judge as &mut dyn Observer]);
-    Ok(judge.conclude(&mission.world, &ended).outcome.to_owned())
+    let done = scenario::run(scenario::build(&changed)?, None, &mut [])?;
+    Ok(done.outcome.outcome.to_owned())
 }
 
 fn recorder(mission: &Mission) -> Result<Recorder<'static>, CampaignError> {

@@ -7,9 +7,7 @@ use campaign::regress::{Baseline, find_changes, measure};
 use campaign::{Folder, Plan, Row, Shard, TABLE_FILE, Watch, check_demands, execute, read_table};
 use record::{Log, Recorder};
 use scenario::Scenario;
-use scenario::outcome::{Judge, check_expectations};
 use scenario::recording::{recorder_plan, scene};
-use sim::Observer;
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -42,19 +40,14 @@ fn said(error: impl std::fmt::Display) -> String {
 }
 
 fn run(scenario: &Scenario, look: &mut Look) -> Result<(), String> {
-    let mut mission = scenario::build(scenario).map_err(said)?;
+    let mission = scenario::build(scenario).map_err(said)?;
     let plan = recorder_plan(&mission, &scene(&mission)).map_err(said)?;
-    let mut recorder = Recorder::new(&mission.world, plan, None);
-    let mut judge = Judge::new(&mission);
-    let ended = {
-        let observers: &mut [&mut dyn Observer] = &mut [&mut judge, &mut recorder];
-        mission.world.run(mission.steps, &*mission.controller, observers)
-    };
-    let outcome = judge.conclude(&mission.world, &ended);
-    look.insert("state", digest(&format!("{:?}", mission.world.state())));
-    look.insert("recording", digest(&recorded(&recorder.log)));
-    look.insert("outcome", digest(&format!("{outcome:?}")));
-    look.insert("verdicts", digest(&format!("{:?}", check_expectations(&scenario.expects, &outcome))));
+    let recorder = Recorder::new(&mission.world, plan, None);
+    let done = scenario::run(mission, Some(recorder), &mut []).map_err(said)?;
+    look.insert("state", digest(&format!("{:?}", done.mission.world.state())));
+    look.insert("recording", digest(&done.log.as_ref().map(recorded)));
+    look.insert("outcome", digest(&format!("{:?}", done.outcome)));
+    look.insert("verdicts", digest(&format!("{:?}", done.verdicts)));
     Ok(())
 }
 

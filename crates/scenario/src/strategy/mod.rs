@@ -1,6 +1,7 @@
 //! Guidance and control: one file per strategy; file-side enum, step-side [`sim::Controller`], joined by one match.
 
 mod free_floating;
+mod gripper;
 mod replay;
 mod schedule;
 mod soft_dock;

@@ -17,13 +17,14 @@
 //! and starts the approach from there; without `rate_matching` the tool follows positions only.
 
 use super::free_floating::{Arm, RateRequest, calc_bounded_error};
+use super::gripper::{self, Gripper};
 use super::trajectory::{Quintic, calc_rate};
 use crate::build::{ActuatorTable, Faults, solve_pose};
 use crate::navigation::{FreeBody, Mass};
-use crate::spec::{Scenario, Sensor, SensorKind, TrackAndGrasp};
+use crate::spec::{Scenario, TrackAndGrasp};
 use multibody::{JointKind, calc_locked_inertia};
 use sim::{ActuatorKind, Command, Controller, Known, Model, World};
-use spatial::{Frame, Pose, Rot, Twist, Vec3};
+use spatial::{Frame, Pose, Twist, Vec3};
 
 /// Where a capture stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,17 +105,8 @@ pub(super) struct Grasper {
     target: usize,
     grapple: usize,
     drives: Vec<ArmDrive>,
-    fingers: Vec<Finger>,
-    pads: Vec<Pad>,
+    gripper: Gripper,
     period_steps: u64,
-}
-
-/// A sensor of what touches a part of the servicer.
-#[derive(Clone, Debug)]
-struct Pad {
-    quantity: String,
-    link: usize,
-    rot_ls: Rot,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -124,13 +116,6 @@ struct ArmDrive {
     v_index: usize,
     limits: Option<[f64; 2]>,
     max_rate: f64,
-}
-
-#[derive(Clone, Debug)]
-struct Finger {
-    actuator: usize,
-    /// Fingers that move with this coordinate: followers count.
-    count: f64,
 }
 
 pub(super) fn build(
@@ -156,31 +141,11 @@ pub(super) fn build(
             .add("strategy.tool_frame", "the tool needs six or more joints with a joint-drive between it and the base");
         return None;
     }
-    let fingers = fingers_of(spec, model, table, vehicle, faults)?;
+    let gripper = gripper::build((scenario, spec), model, table, (vehicle, target), faults)?;
     let v0 = model.vehicles[vehicle].v0;
     let arm = Arm { vehicle, link, coordinates: drives.iter().map(|d| d.v_index - v0).collect() };
     let period_steps = (PERIOD / model.step).round().max(1.0) as u64;
-    let pads = pads_of(scenario, model, vehicle);
-    if pads.is_empty() && !scenario.navigation.perfect {
-        let reason = format!(
-            "says nothing of what \"{}\" touches, and the gripper must feel what it closes on; add a [[sensor]] of kind \
-             contact-force on its pads",
-            spec.servicer
-        );
-        faults.add("sensor", reason);
-    }
-    Some(Grasper { spec: spec.clone(), arm, target, grapple, drives, fingers, pads, period_steps })
-}
-
-/// The sensors of contact that a vehicle carries.
-fn pads_of(scenario: &Scenario, model: &Model, vehicle: usize) -> Vec<Pad> {
-    let pad = |sensor: &Sensor| {
-        let SensorKind::ContactForce { link, pose, .. } = &sensor.kind else { return None };
-        let (owner, link) = model.link(link)?;
-        let quantity = format!("sensor.{}.force", sensor.name);
-        (owner == vehicle).then(|| Pad { quantity, link, rot_ls: pose.pose().rotation })
-    };
-    scenario.sensors.iter().filter_map(pad).collect()
+    Some(Grasper { spec: spec.clone(), arm, target, grapple, drives, gripper, period_steps })
 }
 
 fn frame_of(model: &Model, name: &str, key: &str, faults: &mut Faults<'_>) -> Option<(usize, usize)> {
@@ -220,35 +185,6 @@ fn arm_drives(spec: &TrackAndGrasp, model: &Model, vehicle: usize, link: usize) 
     }
     drives.reverse();
     drives
-}
-
-fn fingers_of(
-    spec: &TrackAndGrasp,
-    model: &Model,
-    table: &ActuatorTable,
-    vehicle: usize,
-    faults: &mut Faults<'_>,
-) -> Option<Vec<Finger>> {
-    let owner = &model.vehicles[vehicle];
-    let mut fingers = Vec::new();
-    for name in spec.gripper.names() {
-        let Some(joint) = owner.tree.joints.iter().find(|j| j.name == *name && !j.is_mimic) else {
-            let valid = owner.tree.joints.iter().filter(|j| !j.is_mimic).map(|j| j.name.as_str());
-            faults.unknown("strategy.gripper", "joint with a position of its own", name, valid);
-            return None;
-        };
-        let coordinate = owner.v0 + joint.v_index;
-        let acts = |a: &usize| matches!(table.actuators[*a].kind, ActuatorKind::JointDrive { coordinate: c, stiffness, .. } if c == coordinate && stiffness == 0.0);
-        let Some(actuator) = (0..table.actuators.len()).find(acts) else {
-            let reason =
-                format!("joint \"{name}\" needs a joint-drive of zero stiffness: a rate loop with a force limit");
-            faults.add("strategy.gripper", reason);
-            return None;
-        };
-        let count = owner.tree.joints.iter().filter(|j| j.v_index == joint.v_index).count() as f64;
-        fingers.push(Finger { actuator, count });
-    }
-    Some(fingers)
 }
 
 impl Controller for Grasper {
@@ -297,6 +233,11 @@ impl Grasper {
 
     fn tool(&self, world: &World) -> Frame {
         world.link_frame(self.arm.vehicle, self.arm.link)
+    }
+
+    /// Along which the fingers close, W.
+    fn closing_axis(&self, known: &Known<'_>) -> Vec3 {
+        self.tool(known.world).rot.column(1).into_owned()
     }
 
     /// The grapple frame as the strategy believes it to be.
@@ -425,7 +366,7 @@ impl Grasper {
     fn feel(&self, known: &Known<'_>, memory: &mut [f64]) {
         let closing = phase_in(memory) == Phase::Close;
         if closing && memory[slot::FELT] < 0.0 {
-            let [plus, minus] = self.calc_presses(known);
+            let [plus, minus] = self.gripper.calc_presses(known, &self.closing_axis(known));
             if plus + minus > TOUCH {
                 memory[slot::FELT] = known.world.state().time;
             }
@@ -466,11 +407,11 @@ impl Grasper {
         let world = known.world;
         let closes = matches!(phase_in(memory), Phase::Close | Phase::Damp | Phase::Hold);
         let time = world.state().time;
-        if closes && memory[slot::TOUCHED] < 0.0 && self.calc_press(known) > TOUCH {
+        if closes && memory[slot::TOUCHED] < 0.0 && self.gripper.calc_press(known, &self.closing_axis(known)) > TOUCH {
             memory[slot::TOUCHED] = time;
         }
         let rise = if memory[slot::TOUCHED] < 0.0 { 0.0 } else { ((time - memory[slot::TOUCHED]) / RISE).min(1.0) };
-        for finger in &self.fingers {
+        for finger in &self.gripper.fingers {
             let ActuatorKind::JointDrive { damping, .. } = world.model().actuators[finger.actuator].kind else {
                 continue;
             };
@@ -535,52 +476,12 @@ impl Grasper {
                     && shift.norm() < self.spec.close_distance_m
                     && turn.norm() < self.spec.close_angle_deg.to_radians()
             }
-            Phase::Close => self.calc_press(known) > CLOSED * self.spec.closing_force_n,
+            Phase::Close => {
+                self.gripper.calc_press(known, &self.closing_axis(known)) > CLOSED * self.spec.closing_force_n
+            }
             Phase::Damp => world.state().time - memory[slot::SINCE] > 3.0 * self.spec.damping_time_s,
             Phase::Hold | Phase::Abort => false,
         }
-    }
-
-    /// The smaller of the forces that press the target from the two sides, N.
-    fn calc_press(&self, known: &Known<'_>) -> f64 {
-        let [plus, minus] = self.calc_presses(known);
-        plus.min(minus)
-    }
-
-    /// Forces on the target along the closing axis, by sign, N: what touches it, or what the pads' sensors say.
-    fn calc_presses(&self, known: &Known<'_>) -> [f64; 2] {
-        let axis = self.tool(known.world).rot.column(1).into_owned();
-        let forces = if known.is_perfect { self.find_touches(known.world) } else { self.read_pads(known) };
-        let (mut plus, mut minus) = (0.0, 0.0);
-        for force in forces {
-            let along = force.dot(&axis);
-            if along > 0.0 { plus += along } else { minus -= along }
-        }
-        [plus, minus]
-    }
-
-    /// Forces between servicer and target, on the target, W axes, N.
-    fn find_touches(&self, world: &World) -> Vec<Vec3> {
-        let vehicle = |body: usize| world.model().owners.get(body).map(|o| o.0);
-        let on_target = |touch: sim::TouchReport| {
-            let (a, b) = world.model().pair_bodies(touch.pair);
-            match (vehicle(a), vehicle(b)) {
-                (Some(s), Some(t)) if s == self.arm.vehicle && t == self.target => Some(touch.force_w),
-                (Some(t), Some(s)) if s == self.arm.vehicle && t == self.target => Some(-touch.force_w),
-                _ => None,
-            }
-        };
-        world.touches().filter_map(on_target).collect()
-    }
-
-    /// What the servicer's sensors of contact say presses the target, W axes, N.
-    fn read_pads(&self, known: &Known<'_>) -> Vec<Vec3> {
-        let on_target = |pad: &Pad| {
-            let said = known.find(&pad.quantity)?;
-            let force = pad.rot_ls * Vec3::from_column_slice(&said.value[..3]);
-            Some(-(known.world.link_frame(self.arm.vehicle, pad.link).rot * force))
-        };
-        self.pads.iter().filter_map(on_target).collect()
     }
 }
 
