@@ -13,6 +13,7 @@
 use crate::actuator::CoordinatePoint;
 use crate::contacts::Touch;
 use crate::effect::{self, Acting};
+use crate::force;
 use crate::model::{Model, PairLaw};
 use crate::state::{ContactMemory, State};
 use crate::workspace::Workspace;
@@ -67,6 +68,7 @@ pub(crate) fn add_external(model: &Model, state: &mut State, ws: &Workspace, h: 
         state.works[thrust.actuator] += h * displacing_twist(model, ws, thrust.body).dot(&thrust.wrench);
     }
     effect::add_works(model, state, ws, |body| displacing_twist(model, ws, body), h);
+    force::add_works(model, state, ws, |body| displacing_twist(model, ws, body), h);
 }
 
 /// Work and loss of a touching point, whose bodies gained `gain` against each other.

@@ -73,6 +73,8 @@ pub struct Works<'a> {
     pub drives: &'a [f64],
     /// Of effects: loads from outside positive or negative, friction and dampers negative.
     pub effects: &'a [f64],
+    /// Of forces of one's own.
+    pub forces: &'a [f64],
 }
 
 /// Follows a run's energy from its start.
@@ -97,7 +99,7 @@ pub struct EnergyBalance {
     pub drive_work: f64,
     /// Work of gravity and tides.
     pub environment_work: f64,
-    /// Work of effects, net of what they store; negative where they dissipate.
+    /// Work of effects, net of what they store, and of forces of one's own; negative where they dissipate.
     pub effect_work: f64,
     /// What contacts dissipated.
     pub contact_loss: f64,
@@ -163,7 +165,8 @@ impl EnergyBalance {
 
 fn sum_works(world: &World) -> [f64; 3] {
     let works = world.works();
-    [works.actuators, works.drives, works.effects].map(|of| of.iter().sum())
+    let sum = |of: &[f64]| of.iter().sum::<f64>();
+    [sum(works.actuators), sum(works.drives), sum(works.effects) + sum(works.forces)]
 }
 
 /// All that is stored at the world's present state but in contacts, J.

@@ -68,6 +68,14 @@ pub enum ModelError {
         /// What is wrong with it.
         fault: String,
     },
+    /// A force of one's own that cannot be.
+    #[error("force \"{name}\" {fault}")]
+    Force {
+        /// Its name.
+        name: String,
+        /// What is wrong with it.
+        fault: String,
+    },
     /// Contact geometry that cannot be.
     #[error(transparent)]
     Contact(#[from] contact::ContactError),

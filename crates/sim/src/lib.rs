@@ -34,6 +34,7 @@ mod effect;
 mod energy;
 mod environment;
 mod error;
+mod force;
 mod mechanism;
 mod model;
 mod pivots;
@@ -59,6 +60,7 @@ pub use effect::{
 pub use energy::{Energy, EnergyAudit, EnergyBalance, Works};
 pub use environment::Environment;
 pub use error::{ModelError, StepError};
+pub use force::Force;
 pub use mechanism::{
     Anchor, Bushing, Capture, Latch, Mechanism, MechanismKind, MechanismMemory, MechanismReport, MechanismStatus,
     Overload, PullIn, Side, Strength, Strut, StrutSides, Weld,

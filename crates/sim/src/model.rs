@@ -7,11 +7,13 @@ use crate::actuator::{Actuator, ActuatorKind, Coordinate};
 use crate::effect::{Effect, EffectKind, Effects, Series};
 use crate::environment::Environment;
 use crate::error::ModelError;
+use crate::force::Force;
 use crate::mechanism::{Mechanism, MechanismKind};
 use contact::{Collider, Normal, Scene};
 use friction::{Friction, Pivot};
 use multibody::{JointKind, Tree};
 use spatial::{Frame, Inertia, Pose, Vec3};
+use std::sync::Arc;
 
 /// How a vehicle's base moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -221,6 +223,8 @@ pub struct Model {
     pub drives: Vec<crate::drive::Drive>,
     /// Physics beyond all that.
     pub(crate) effects: Effects,
+    /// Forces of one's own; see [`Model::with_forces`].
+    pub(crate) forces: Vec<Arc<dyn Force>>,
     /// Global bodies and the frames in them, of the two sides of each mechanism.
     pub(crate) mechanism_sides: Vec<[(usize, Frame); 2]>,
     /// Pairs whose guide presses them together with a weight; nothing is detected for them.
@@ -284,6 +288,7 @@ impl Model {
             mechanisms: spec.mechanisms,
             drives: Vec::new(),
             effects: Effects::default(),
+            forces: Vec::new(),
             mechanism_sides,
             dead_weights: Vec::new(),
             speed_limited: Vec::new(),
@@ -360,7 +365,12 @@ impl Model {
 
     /// How many actuators, drives and effects have books of their own.
     pub(crate) fn n_works(&self) -> usize {
-        self.actuators.len() + self.drives.len() + self.effects.list.len()
+        self.actuators.len() + self.drives.len() + self.effects.list.len() + self.forces.len()
+    }
+
+    /// Where the books of a force stand in [`crate::State::works`].
+    pub(crate) fn work_of_force(&self, index: usize) -> usize {
+        self.actuators.len() + self.drives.len() + self.effects.list.len() + index
     }
 
     /// Where the books of an effect stand in [`crate::State::works`].

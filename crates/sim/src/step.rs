@@ -15,6 +15,7 @@ use crate::books::{self, Thrust};
 use crate::contacts::{Answer, Place, Touch, commit_bristles, find_touches};
 use crate::drive;
 use crate::effect::{self, Acting};
+use crate::force;
 use crate::mechanism;
 use crate::model::{Base, Model};
 use crate::pivots;
@@ -172,6 +173,7 @@ pub(crate) fn calc_external(model: &Model, state: &State, ws: &mut Workspace) {
         }
     }
     effect::add_wrenches(model, state, ws);
+    force::add_wrenches(model, state, ws);
     push::add_to_bases(model, ws);
 }
 
@@ -310,7 +312,7 @@ fn recalc_bias_at_midpoint(model: &Model, state: &State, ws: &mut Workspace) {
         let (kin, range) = (&mut ws.kin[i], vehicle.v_range());
         kin.update_velocities(&vehicle.tree, &(base + gain * 0.5), &ws.v_mid[range]);
     }
-    if effect::depends_on_twists(model) {
+    if effect::depends_on_twists(model) || !model.forces.is_empty() {
         calc_external(model, state, ws);
     }
     calc_bias(model, state, ws, true);

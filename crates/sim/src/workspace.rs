@@ -3,6 +3,7 @@
 use crate::actuator::{CoordinateForce, CoordinatePoint};
 use crate::contacts::{Answer, Touch};
 use crate::effect::calc_carried;
+use crate::force::Pulls;
 use crate::model::{Base, Model, Vehicle};
 use crate::push::Push;
 use crate::state::State;
@@ -72,6 +73,8 @@ pub(crate) struct Workspace {
     pub islands: crate::solve::Islands,
     /// Forces beside all laws.
     pub push: Option<Push>,
+    /// What forces of one's own do.
+    pub pulls: Pulls,
     pub memories: Vec<crate::state::ContactMemory>,
     pub parts: crate::effect::Parts,
     pub rk: crate::rk4::Stages,
@@ -129,6 +132,7 @@ impl Workspace {
             coordinate_lines: vec![(0.0, 0.0); nv],
             islands: crate::solve::Islands::new(model),
             push: None,
+            pulls: Pulls::default(),
             memories: Vec::new(),
             parts: crate::effect::Parts::new(model),
             rk: crate::rk4::Stages::new(model),

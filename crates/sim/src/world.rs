@@ -462,8 +462,9 @@ impl World {
     /// Work since the start of every actuator, drive and effect, J.
     pub fn works(&self) -> Works<'_> {
         let (actuators, rest) = self.state.works.split_at(self.model.actuators.len());
-        let (drives, effects) = rest.split_at(self.model.drives.len());
-        Works { actuators, drives, effects }
+        let (drives, rest) = rest.split_at(self.model.drives.len());
+        let (effects, forces) = rest.split_at(self.model.effects.list.len());
+        Works { actuators, drives, effects, forces }
     }
 
     /// Effort that acted on a coordinate in the last step, N·m or N (actuators and passive laws).

@@ -20,6 +20,7 @@ mod effect_lines;
 mod energy_books;
 mod extremes;
 mod followers;
+mod forces;
 mod free_motion;
 mod friction;
 mod guided;

@@ -32,12 +32,12 @@ pub struct BodyMotion {
 
 impl BodyMotion {
     /// A force (W axes, N) at a point given from the link's origin in the link's axes, as a wrench about that origin.
-    pub(super) fn push_at(&self, force: Vec3, point_l: &Vec3) -> Wrench {
+    pub fn push_at(&self, force: Vec3, point_l: &Vec3) -> Wrench {
         Wrench::from_force_at(force, &(self.frame_wl.rot * point_l))
     }
 
     /// Velocity of the material point `point_l` (link's axes, m), W axes, m/s.
-    pub(super) fn velocity_at(&self, point_l: &Vec3) -> Vec3 {
+    pub fn velocity_at(&self, point_l: &Vec3) -> Vec3 {
         self.twist.at(&(self.frame_wl.rot * point_l))
     }
 }
