@@ -65,6 +65,10 @@ pub struct Link {
     pub name: String,
     /// The body it belongs to.
     pub body: usize,
+    /// The link that it hangs on; none of the base.
+    pub parent: Option<usize>,
+    /// The joint between the two, a fixed one too; empty of the base.
+    pub joint: String,
     /// Link frame in the body frame.
     pub frame_bl: Frame,
     /// The link's own inertia, about the link's origin, in its axes.
@@ -150,7 +154,9 @@ impl Tree {
             let inertia =
                 link.inertial.map_or(Inertia::default(), |m| Inertia::from_com(m.mass, &m.com, &m.tensor_com));
             tree.bodies[body].inertia += inertia.transformed(&frame_bl.rot, &frame_bl.pos);
-            tree.links.push(Link { name: link.name.clone(), body, frame_bl, inertia });
+            let own = i.checked_sub(1).map(|j| &robot.joints[j]);
+            let (parent, joint) = (own.map(|j| j.parent), own.map_or(String::new(), |j| j.name.clone()));
+            tree.links.push(Link { name: link.name.clone(), body, parent, joint, frame_bl, inertia });
         }
         tree.number_coordinates(robot, &joint_of_description);
         tree.load_leaders();
@@ -218,9 +224,16 @@ impl Tree {
         // does not change, since it spins about its own axis.
         let rotor = Inertia { mass: 0.0, mc: Vec3::zeros(), rot: inertia * axis * axis.transpose() };
         self.bodies.push(Body { parent: body, inertia: rotor });
-        let body = self.bodies.len() - 1;
-        self.links.push(Link { name: name.to_owned(), body, frame_bl: Frame::identity(), inertia: rotor });
+        let (on, body) = (body, self.bodies.len() - 1);
+        self.push_link(name, body, on, rotor);
         self.joints.len() - 1
+    }
+
+    /// A link of a body that no file names, on the first link of another body.
+    fn push_link(&mut self, name: &str, body: usize, on: usize, inertia: Inertia) {
+        let parent = self.links.iter().position(|link| link.body == on);
+        let (name, joint) = (name.to_owned(), name.to_owned());
+        self.links.push(Link { name, body, parent, joint, frame_bl: Frame::identity(), inertia });
     }
 
     /// A joint of one coordinate, behind all others, that nothing limits, damps or drives.
@@ -266,7 +279,7 @@ impl Tree {
             parent = self.bodies.len() - 1;
         }
         let inertia = self.bodies[parent].inertia;
-        self.links.push(Link { name: name.to_owned(), body: parent, frame_bl: Frame::identity(), inertia });
+        self.push_link(name, parent, body, inertia);
         self.sliding_points.push(SlidingPoint { joint: first, link: self.links.len() - 1 });
         first
     }

@@ -31,14 +31,15 @@ pub trait Force: std::fmt::Debug + Send + Sync {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pull {
     force: usize,
+    pub at: (usize, usize),
     body: usize,
-    wrench: Wrench,
+    pub wrench: Wrench,
 }
 
 /// Scratch of all forces.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pulls {
-    pulls: Vec<Pull>,
+    pub pulls: Vec<Pull>,
     motions: Vec<BodyMotion>,
     wrenches: Vec<Wrench>,
 }
@@ -78,7 +79,7 @@ pub(crate) fn add_wrenches(model: &Model, state: &State, ws: &mut Workspace) {
             let body = model.vehicles[v].body0 + model.vehicles[v].tree.links[l].body;
             let wrench = wrench.about(&(ws.kin[v].anchor - motion.frame_wl.pos));
             ws.external[body] += wrench;
-            pulls.push(Pull { force: index, body, wrench });
+            pulls.push(Pull { force: index, at: (v, l), body, wrench });
         }
     }
     ws.pulls = Pulls { pulls, motions, wrenches };

@@ -28,6 +28,7 @@ mod account;
 mod actuator;
 mod books;
 mod contacts;
+mod cut;
 mod dead_weight;
 mod drive;
 mod effect;

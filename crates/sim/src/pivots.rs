@@ -34,7 +34,8 @@ pub(crate) struct PivotTouch {
     /// Moment at zero gain, its fall with the gain, and what the solve gave.
     line: Vec3,
     slope: Mat3,
-    moment: Vec3,
+    /// On B, W axes, N·m.
+    pub moment: Vec3,
 }
 
 /// Relative difference between a line's moment and the law's that asks for a new solve, and what is round-off, N·m.

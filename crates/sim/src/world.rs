@@ -23,8 +23,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct World {
     model: Arc<Model>,
-    state: State,
-    ws: Workspace,
+    pub(crate) state: State,
+    pub(crate) ws: Workspace,
     is_fresh: bool,
     integrator: Integrator,
     pub(crate) perception: Option<Arc<dyn Perception>>,

@@ -13,9 +13,6 @@ use look::{Look, look};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Keys of things that are not simulated in this version: a bench shows that the thing is refused by name.
-const REFUSED: [(&str, &str); 1] = [("sensor<force-torque>.", "sensor<force-torque>")];
-
 /// Keys that only a diagnosis reads: its own tests show what each does (`catalogue::tolerances` of `softdock-diagnose`).
 const OF_A_DIAGNOSIS: &str = "tolerance.";
 
@@ -45,10 +42,7 @@ fn every_key_changes_something_or_is_refused() {
         all.len(),
         benches.iter().map(|b| b.variations.len()).sum::<usize>()
     );
-    let is_told = |key: &str| {
-        keys.contains(key) || REFUSED.iter().any(|(prefix, instead)| key.starts_with(prefix) && keys.contains(instead))
-    };
-    let missing = all.iter().filter(|key| !is_told(key));
+    let missing = all.iter().filter(|key| !keys.contains(key.as_str()));
     faults.extend(
         missing.map(|key| format!("{key}: no bench shows that it does anything; add a `#~ path=value` to one")),
     );

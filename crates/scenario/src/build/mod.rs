@@ -120,7 +120,6 @@ pub fn build_from(scenario: &Scenario, stock: &Stock) -> Result<Mission, Scenari
         effects: Vec::new(),
     };
     effects::apply(&plan, &mut parts, &mut faults);
-    refuse_what_is_not_simulated(scenario, &mut faults);
     if !faults.is_empty() {
         return Err(faults.into_errors());
     }
@@ -176,19 +175,6 @@ fn finish(
 
 fn samples(scenario: &Scenario) -> u64 {
     (1.0 / (scenario.output.log_rate_hz * scenario.integrator.step_s)).round().max(1.0) as u64
-}
-
-/// The file's words are ahead of the simulator's: what is understood and not yet simulated is refused, never ignored.
-fn refuse_what_is_not_simulated(scenario: &Scenario, faults: &mut Faults<'_>) {
-    for (i, sensor) in scenario.sensors.iter().enumerate().filter(|(_, s)| !s.kind.is_simulated()) {
-        let reason = format!(
-            "sensors of kind {} are not simulated in this version; joints and bodies are recorded as they are \
-             (joint.….position, body.….angular_velocity, …), and a [[sensor]] can be of kind joint-encoder, tachometer, imu, pose, \
-             contact-force or mechanism-force; remove the entry",
-            sensor.kind.text()
-        );
-        faults.add(&format!("sensor[{i}].kind"), reason);
-    }
 }
 
 /// Every sensor measures something, and every fault of a sensor is one that it can have.

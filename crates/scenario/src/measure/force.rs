@@ -1,4 +1,4 @@
-//! Force sensors: what touches a part, and what a mechanism does.
+//! Force sensors: what touches a part, what a mechanism does, and what passes through a joint.
 
 use multibody::SlidingPoint;
 use sim::{EffectKind, JointEffect, JointLaw, Model, Vehicle, World};
@@ -21,6 +21,13 @@ pub enum ForceGauge {
         pose_ls: Pose,
         /// The elastic mount of the part, behind which the sensor sits.
         mount: Option<Mount>,
+    },
+    /// What a link's parent does to it through the joint between them, link axes, moment about the link's origin.
+    Joint {
+        /// Vehicle.
+        vehicle: usize,
+        /// The link beyond the joint.
+        link: usize,
     },
     /// What a mechanism does to its side b (or a), W axes, moment about the point of action.
     Mechanism {
@@ -108,6 +115,13 @@ impl ForceGauge {
         match self {
             Self::Mechanism { index, sign } => {
                 world.mechanisms().nth(*index).map_or(Wrench::default(), |m| m.wrench_w * *sign)
+            }
+            Self::Joint { vehicle, link } => {
+                let Some(wrench) = world.calc_joint_wrench(*vehicle, *link) else {
+                    return Wrench::new(Vec3::repeat(f64::NAN), Vec3::repeat(f64::NAN));
+                };
+                let rot = world.link_frame(*vehicle, *link).rot;
+                Wrench::new(rot.tr_mul(&wrench.moment), rot.tr_mul(&wrench.force))
             }
             Self::Contact { body, collider, vehicle, link, pose_ls, mount } => {
                 let frame = world.link_frame(*vehicle, *link);

@@ -84,6 +84,14 @@ pub(crate) fn links(model: &Model) -> impl Iterator<Item = (&str, &str, (usize, 
     })
 }
 
+/// Joints that bear a link, fixed ones too: vehicle, name, and the link as vehicle and link.
+fn borne(model: &Model) -> impl Iterator<Item = (&str, &str, (usize, usize))> {
+    model.vehicles.iter().enumerate().flat_map(|(v, vehicle)| {
+        let links = vehicle.tree.links.iter().enumerate().filter(|(_, link)| link.parent.is_some());
+        links.map(move |(l, link)| (vehicle.name.as_str(), link.joint.as_str(), (v, l)))
+    })
+}
+
 fn joint(model: &Model, name: &str) -> Result<usize, String> {
     only("joint", name, joints(model))
 }
@@ -206,7 +214,11 @@ fn force(scenario: &Scenario, model: &Model, name: &str) -> Result<ForceGauge, S
             let index = index.ok_or_else(|| format!("no mechanism \"{mechanism}\"{}", hint()))?;
             Ok(ForceGauge::Mechanism { index, sign: if *on == MechanismEnd::B { 1.0 } else { -1.0 } })
         }
-        _ => Err(format!("sensor \"{name}\" reads no force that is simulated in this version")),
+        SensorKind::ForceTorque { joint, .. } => {
+            let (vehicle, link) = only("joint", joint, borne(model))?;
+            Ok(ForceGauge::Joint { vehicle, link })
+        }
+        _ => Err(format!("sensor \"{name}\" reads no force")),
     }
 }
 

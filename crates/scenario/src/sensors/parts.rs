@@ -47,8 +47,11 @@ pub(crate) fn parts_of(sensor: &SensorSpec, model: &Model) -> Result<Vec<Part>, 
         }
         SensorKind::Imu { .. } => Ok(of_imu(sensor)),
         SensorKind::Pose { .. } => of_pose(sensor, model),
-        // The build refuses what is not simulated.
-        SensorKind::ForceTorque { .. } => Ok(Vec::new()),
+        SensorKind::ForceTorque { force_noise_n, force_bias_n, torque_noise_n_m, torque_bias_n_m, .. } => {
+            let force = Part { bias: Vec3::from(*force_bias_n), ..plain("force", *force_noise_n) };
+            let torque = Part { bias: Vec3::from(*torque_bias_n_m), ..plain("torque", *torque_noise_n_m) };
+            Ok(vec![force, torque])
+        }
     }
 }
 

@@ -232,11 +232,6 @@ impl SensorKind {
             Self::MechanismForce { .. } => "mechanism-force",
         }
     }
-
-    /// Whether this version simulates it.
-    pub fn is_simulated(&self) -> bool {
-        !matches!(self, Self::ForceTorque { .. })
-    }
 }
 
 /// A side of a mechanism.

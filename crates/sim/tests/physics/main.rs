@@ -24,6 +24,7 @@ mod forces;
 mod free_motion;
 mod friction;
 mod guided;
+mod joint_wrench;
 mod joints;
 mod loops;
 mod mechanism_energy;

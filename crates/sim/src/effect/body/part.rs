@@ -50,6 +50,11 @@ struct Action {
 }
 
 impl Parts {
+    /// What an effect does to its body from outside, about the anchor of the body's vehicle.
+    pub fn load_of(&self, effect: usize) -> Wrench {
+        self.actions.iter().find(|a| a.effect == effect).map_or(Wrench::default(), |a| a.external)
+    }
+
     pub fn new(model: &Model) -> Self {
         let n = model.effects.n_memory();
         Self {
