@@ -106,6 +106,30 @@ fn a_campaign_that_is_killed_ten_times_loses_nothing() {
 }
 
 #[test]
+fn runs_whose_controller_sees_through_sensors_are_the_same_on_any_threads_and_after_a_kill() {
+    let home = Home::new();
+    let camera = ["campaign", "scenarios/tumbling-capture-camera.toml", "--set", "duration_s=8.0", "--runs", "12"];
+    let with =
+        |out: &str, more: &[&str]| command(&[&camera[..], &["--out", text(&home.at(out)), "--quiet"], more].concat());
+    for (out, threads) in [("one", "1"), ("two", "2")] {
+        with(out, &["--threads", threads]).status().unwrap();
+    }
+    let lines =
+        || fs::read(home.at("killed").join("runs.jsonl")).map_or(0, |b| b.iter().filter(|b| **b == b'\n').count());
+    let mut child = with("killed", &["--threads", "1", "--resume"]).stdout(Stdio::null()).spawn().unwrap();
+    let patience = Instant::now();
+    while lines() < 4 && patience.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(3));
+    }
+    child.kill().unwrap(); // SIGKILL
+    child.wait().unwrap();
+    assert!((4..12).contains(&lines()), "{} runs", lines());
+    with("killed", &["--resume"]).status().unwrap();
+    assert_eq!(table(&home.at("one")), table(&home.at("two")), "threads");
+    assert_eq!(table(&home.at("one")), table(&home.at("killed")), "a kill");
+}
+
+#[test]
 fn ctrl_c_stops_after_the_runs_that_are_on_and_says_how_to_go_on() {
     let home = Home::new();
     let (whole, stopped) = (home.at("whole"), home.at("stopped"));
