@@ -5,7 +5,44 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
 
-const SCENARIO: &str = "scenarios/rigs/driven-pendulum.toml";
+/// Rigs of which a day is recorded, each with what differs between its runs.
+#[derive(Clone, Copy)]
+enum Rig {
+    /// A pendulum whose motor follows a course.
+    Pendulum,
+    /// A platform on struts that is kicked.
+    Struts,
+}
+
+impl Rig {
+    fn scenario(self) -> &'static str {
+        match self {
+            Self::Pendulum => "scenarios/rigs/driven-pendulum.toml",
+            Self::Struts => "scenarios/rigs/strut-bench.toml",
+        }
+    }
+
+    /// What is set in a run.
+    fn of_run(self, run: usize) -> Vec<String> {
+        match self {
+            Self::Pendulum => vec![course(run)],
+            Self::Struts => {
+                let [u, v, w, p, q, r] = KICKS[run - 1];
+                let twist = |key: &str, [x, y, z]: [f64; 3]| format!("vehicle.platform.twist.{key}=[{x}, {y}, {z}]");
+                vec![twist("linear_m_per_s", [u, v, w]), twist("angular_deg_per_s", [p, q, r])]
+            }
+        }
+    }
+}
+
+/// Velocities, m/s, and rates, deg/s, that the platform starts with.
+const KICKS: [[f64; 6]; RUNS] = [
+    [0.05, -0.03, 0.08, 6.0, -4.0, 5.0],
+    [-0.06, 0.05, 0.05, -5.0, 7.0, -3.0],
+    [0.02, 0.08, -0.07, 8.0, 2.0, -6.0],
+    [0.07, 0.02, 0.06, -3.0, -8.0, 4.0],
+    [-0.03, -0.07, 0.09, 5.0, 5.0, 7.0],
+];
 const RUNS: usize = 5;
 /// Runs that are left out of the fit.
 const HELD_OUT: usize = 2;
@@ -34,14 +71,14 @@ fn course(run: usize) -> String {
 }
 
 /// A day on the rig with some effect in it.
-fn record(set: &Path, effect: Option<&str>, format: &str) {
+fn record(rig: Rig, set: &Path, effect: Option<&str>, format: &str) {
     let out = set.join("run").display().to_string();
     let folder = set.join("day").display().to_string();
     for run in 1..=RUNS {
-        let (course, seed) = (course(run), run.to_string());
+        let (changes, seed) = (rig.of_run(run), run.to_string());
         let role = if run + HELD_OUT > RUNS { "holdout" } else { "fit" };
-        let mut arguments =
-            vec!["run", SCENARIO, "--no-rrd", "--quiet", "--out", &out, "--seed", &seed, "--set", &course];
+        let mut arguments = vec!["run", rig.scenario(), "--no-rrd", "--quiet", "--out", &out, "--seed", &seed];
+        arguments.extend(changes.iter().flat_map(|change| ["--set", change]));
         arguments.extend(["--record", &folder, "--role", role, "--format", format]);
         let planted = effect.map(|effect| format!("effect=[{{ {effect} }}]"));
         arguments.extend(planted.as_deref().into_iter().flat_map(|planted| ["--set", planted]));
@@ -50,9 +87,16 @@ fn record(set: &Path, effect: Option<&str>, format: &str) {
 }
 
 /// The verdict, and the effects with their places and first parameters.
-fn diagnose(set: &Path) -> (String, Vec<(String, String, f64)>) {
+fn diagnose(rig: Rig, set: &Path) -> (String, Vec<(String, String, f64)>) {
     let out = set.join("diagnosis");
-    softdock(&["diagnose", SCENARIO, set.join("day").to_str().unwrap(), "--quiet", "--out", out.to_str().unwrap()]);
+    softdock(&[
+        "diagnose",
+        rig.scenario(),
+        set.join("day").to_str().unwrap(),
+        "--quiet",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
     let diagnosis: Value = serde_json::from_slice(&std::fs::read(out.join("diagnosis.json")).unwrap()).unwrap();
     let text = |value: &Value| value.as_str().unwrap().to_owned();
     let effect = |effect: &Value| {
@@ -63,39 +107,70 @@ fn diagnose(set: &Path) -> (String, Vec<(String, String, f64)>) {
 }
 
 #[track_caller]
-fn is_found(effect: &str, (name, place, value): (&str, &str, f64)) {
+fn is_found(rig: Rig, effect: &str, planted: &[(&str, &str, f64)]) {
     let home = tempfile::tempdir().unwrap();
-    record(home.path(), Some(effect), "csv");
-    let (verdict, effects) = diagnose(home.path());
+    record(rig, home.path(), Some(effect), "csv");
+    let (verdict, effects) = diagnose(rig, home.path());
     assert_eq!(verdict, "explained", "{effects:?}");
-    let [found] = &effects[..] else { panic!("one effect: {effects:?}") };
-    assert_eq!((found.0.as_str(), found.1.as_str()), (name, place));
-    assert!((found.2 / value - 1.0).abs() < 0.02, "{} for {value}", found.2);
+    assert_eq!(effects.len(), planted.len(), "{effects:?}");
+    for (name, place, value) in planted {
+        let found = effects.iter().find(|found| found.0 == *name && found.1 == *place);
+        let found = found.unwrap_or_else(|| panic!("{name} at {place}: {effects:?}"));
+        assert!((found.2 / value - 1.0).abs() < 0.03, "{} for {value}", found.2);
+    }
 }
 
 #[test]
 fn nothing_is_found_where_nothing_was_planted() {
-    let home = tempfile::tempdir().unwrap();
-    record(home.path(), None, "csv");
-    assert_eq!(diagnose(home.path()), ("no-mismatch".to_owned(), Vec::new()));
+    for rig in [Rig::Pendulum, Rig::Struts] {
+        let home = tempfile::tempdir().unwrap();
+        record(rig, home.path(), None, "csv");
+        assert_eq!(diagnose(rig, home.path()), ("no-mismatch".to_owned(), Vec::new()));
+    }
+}
+
+#[test]
+fn a_weak_strut_is_found() {
+    let planted = r#"name = "mechanism-stiffness", place = "mechanism:strut_1", factor = 0.8"#;
+    is_found(Rig::Struts, planted, &[("mechanism-stiffness", "mechanism:strut_1", 0.8)]);
+}
+
+#[test]
+fn a_strut_that_damps_too_little_is_found() {
+    let planted = r#"name = "mechanism-damping", place = "mechanism:strut_2", factor = 0.5"#;
+    is_found(Rig::Struts, planted, &[("mechanism-damping", "mechanism:strut_2", 0.5)]);
+}
+
+#[test]
+fn a_stiff_mount_beside_a_strut_that_damps_too_little_is_found() {
+    let planted = r#"name = "mechanism-stiffness", place = "mechanism:mount", factor = 1.6 },
+        { name = "mechanism-damping", place = "mechanism:strut_3", factor = 0.3"#;
+    let found = [("mechanism-stiffness", "mechanism:mount", 1.6), ("mechanism-damping", "mechanism:strut_3", 0.3)];
+    is_found(Rig::Struts, &planted.replace('\n', " "), &found);
+}
+
+#[test]
+fn a_wrong_mass_on_struts_is_none_of_the_struts() {
+    let planted = r#"name = "body-mass", place = "body:platform/plate", mass = 12.6"#;
+    is_found(Rig::Struts, planted, &[("body-mass", "body:plate", 12.6)]);
 }
 
 #[test]
 fn viscous_friction_behind_a_loop_is_found() {
     let planted = r#"name = "joint-viscous-friction", place = "joint:pendulum/swing", b = 0.005"#;
-    is_found(planted, ("joint-viscous-friction", "joint:swing", 0.005));
+    is_found(Rig::Pendulum, planted, &[("joint-viscous-friction", "joint:swing", 0.005)]);
 }
 
 #[test]
 fn dry_friction_behind_a_loop_is_found() {
     let planted = r#"name = "joint-coulomb-friction", place = "joint:pendulum/swing", c = 0.01"#;
-    is_found(planted, ("joint-coulomb-friction", "joint:swing", 0.01));
+    is_found(Rig::Pendulum, planted, &[("joint-coulomb-friction", "joint:swing", 0.01)]);
 }
 
 #[test]
 fn a_late_encoder_is_found() {
     let planted = r#"name = "sensor-delay", place = "sensor:joint.pendulum/swing.position", delay = 0.01"#;
-    is_found(planted, ("sensor-delay", "sensor:joint.pendulum/swing.position", 0.01));
+    is_found(Rig::Pendulum, planted, &[("sensor-delay", "sensor:joint.pendulum/swing.position", 0.01)]);
 }
 
 #[test]
@@ -103,8 +178,8 @@ fn csv_parquet_and_mcap_are_diagnosed_alike_to_the_byte() {
     let of = |format: &str| {
         let home = tempfile::tempdir().unwrap();
         let planted = r#"name = "joint-viscous-friction", place = "joint:pendulum/swing", b = 0.005"#;
-        record(home.path(), Some(planted), format);
-        diagnose(home.path());
+        record(Rig::Pendulum, home.path(), Some(planted), format);
+        diagnose(Rig::Pendulum, home.path());
         let text = std::fs::read_to_string(home.path().join("diagnosis/diagnosis.json")).unwrap();
         let place = home.path().display().to_string();
         text.replace(&format!(".{format}"), ".csv").replace(&place, "")

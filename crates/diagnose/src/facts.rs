@@ -8,9 +8,9 @@ use friction::Friction;
 use multibody::JointKind;
 use scenario::effects::facts::Survey;
 use scenario::measure::Quantity;
-use sim::ActuatorKind;
+use sim::{ActuatorKind, Bushing, MechanismKind};
 
-pub use scenario::effects::facts::{BodyFact, ContactFact, JointFact, SensorFact};
+pub use scenario::effects::facts::{BodyFact, ContactFact, JointFact, MechanismFact, SensorFact};
 
 /// Places at which effects could act.
 #[derive(Clone, Debug, Default)]
@@ -21,6 +21,8 @@ pub struct Facts {
     pub bodies: Vec<BodyFact>,
     /// Contact pairs.
     pub contacts: Vec<ContactFact>,
+    /// Mechanisms.
+    pub mechanisms: Vec<MechanismFact>,
     /// Thrusters.
     pub thrusters: Vec<String>,
     /// What was measured.
@@ -49,6 +51,7 @@ impl Facts {
             joints: joints(built, tapes),
             bodies: bodies(built),
             contacts: contacts(built),
+            mechanisms: built.model.mechanisms.iter().map(mechanism).collect(),
             thrusters: thrusters(built),
             sensors,
             gravity: built.model.calc_field(0.0, &spatial::Vec3::zeros()).into(),
@@ -124,6 +127,10 @@ fn bodies(built: &Built) -> Vec<BodyFact> {
         let pairs = 0..built.model.scene.pairs().len();
         pairs.into_iter().any(|p| built.model.pair_bodies(p).0 == body || built.model.pair_bodies(p).1 == body)
     };
+    let held = |vehicle: usize| {
+        let sides = built.model.mechanisms.iter().flat_map(|m| [m.side_a.vehicle, m.side_b.vehicle]);
+        sides.flatten().any(|v| v == vehicle)
+    };
     let mut all = Vec::new();
     for (number, vehicle) in built.model.vehicles.iter().enumerate() {
         for (l, link) in vehicle.tree.links.iter().enumerate().filter(|(_, l)| l.inertia.mass > 0.0) {
@@ -142,11 +149,25 @@ fn bodies(built: &Built) -> Vec<BodyFact> {
                 inertia: link.inertia.tensor_com(),
                 mask,
                 is_base,
-                is_torque_free: !pushed && !touched(vehicle.body0) && vehicle.tree.nv == 0,
+                is_torque_free: !pushed && !touched(vehicle.body0) && !held(number) && vehicle.tree.nv == 0,
             });
         }
     }
     all
+}
+
+fn mechanism(mechanism: &sim::Mechanism) -> MechanismFact {
+    let of_hold = |hold: &Bushing| {
+        let any = |along: &spatial::Vec3, about: &spatial::Vec3| along.amax().max(about.amax()) > 0.0;
+        (any(&hold.stiffness, &hold.torsional_stiffness), any(&hold.damping, &hold.torsional_damping))
+    };
+    let (has_springs, has_dampers) = match &mechanism.kind {
+        MechanismKind::Strut(strut) => (strut.stiffness > 0.0, strut.damping > 0.0),
+        MechanismKind::Bushing(hold) => of_hold(hold),
+        MechanismKind::Latch(latch) => of_hold(&latch.hold),
+        MechanismKind::Weld(weld) => of_hold(&weld.hold),
+    };
+    MechanismFact { name: mechanism.name.clone(), has_springs, has_dampers }
 }
 
 fn contacts(built: &Built) -> Vec<ContactFact> {

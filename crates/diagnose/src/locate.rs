@@ -14,6 +14,7 @@ use crate::linear::{Stage, Variation, eliminate};
 use crate::plant::Plant;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use scenario::effects::{self, EffectDef};
 use scenario::spec::{Effect, ParamValue};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
@@ -117,6 +118,7 @@ pub fn places(facts: &Facts, window: f64) -> Vec<Place> {
         all.push(Place { name, columns });
     }
     all.extend(facts.contacts.iter().map(contact_place));
+    all.extend(facts.mechanisms.iter().map(mechanism_place));
     all.retain(|p: &Place| !p.columns.is_empty());
     all
 }
@@ -131,6 +133,19 @@ fn wave(place: &str, amplitude: ParamValue, f: f64, phase: f64, kind: Option<&st
         params.insert("kind".to_owned(), ParamValue::Text(kind.to_owned()));
     }
     Effect { name: "periodic-disturbance".to_owned(), place: place.to_owned(), params }
+}
+
+/// So do a mechanism's.
+fn mechanism_place(mechanism: &crate::facts::MechanismFact) -> Place {
+    let name = mechanism.place();
+    let column = |has: bool, label: &str, def: &EffectDef| {
+        let params = BTreeMap::from([("factor".to_owned(), ParamValue::Number(1.001))]);
+        let effect = Effect { name: def.name.to_owned(), place: name.clone(), params };
+        has.then(|| (label.to_owned(), effect, 1e-3))
+    };
+    let springs = column(mechanism.has_springs, "stiffness", &effects::MECHANISM_STIFFNESS);
+    let dampers = column(mechanism.has_dampers, "damping", &effects::MECHANISM_DAMPING);
+    Place { columns: springs.into_iter().chain(dampers).collect(), name }
 }
 
 /// A contact's own numbers stand for the forces that could be missing in it.

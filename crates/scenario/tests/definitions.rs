@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use scenario::effects::candidate::Candidate;
-use scenario::effects::facts::{ActuatorFact, BodyFact, ContactFact, JointFact, SensorFact, Survey};
+use scenario::effects::facts::{ActuatorFact, BodyFact, ContactFact, JointFact, MechanismFact, SensorFact, Survey};
 use scenario::effects::identify::Tier;
 use scenario::effects::{EffectDef, Shape, Shown, find, models};
 use scenario::measure::Quantity;
@@ -79,6 +79,8 @@ fn candidates(effect: &EffectDef) -> Vec<Candidate> {
     all.extend(bodies.iter().flat_map(|body| of.at_body(body, &survey)));
     all.extend(of.at_world(&survey));
     all.extend(of.at_contact(&contact));
+    let strut = MechanismFact { name: "strut".into(), has_springs: true, has_dampers: true };
+    all.extend(of.at_mechanism(&strut));
     all.extend(sensors().iter().flat_map(|sensor| of.at_sensor(sensor)));
     all
 }

@@ -30,6 +30,9 @@ pub fn hypotheses(facts: &Facts) -> Vec<Hypothesis> {
     for contact in &facts.contacts {
         add(&mut all, |c| c.at_contact(contact));
     }
+    for mechanism in &facts.mechanisms {
+        add(&mut all, |c| c.at_mechanism(mechanism));
+    }
     for sensor in &facts.sensors {
         add(&mut all, |c| c.at_sensor(sensor));
     }

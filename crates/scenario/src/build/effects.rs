@@ -100,6 +100,11 @@ pub(super) fn apply(plan: &[Entry<'_>], parts: &mut Parts, faults: &mut Faults<'
             Build::Part(part) => body::add_parts(entry, part, parts, faults),
             Build::Acceleration(of) => body::add_acceleration(entry, of(entry), parts),
             Build::Pair(edit) => contact::edit_laws(entry, edit, parts, faults),
+            Build::Mechanism(edit) => {
+                for index in places::mechanisms(entry, parts, faults) {
+                    edit(entry, &mut parts.mechanisms[index].kind);
+                }
+            }
             Build::Pose(displace) => contact::displace_parts(entry, displace, parts, faults),
             Build::NoModel => {
                 entry.fault(faults, "is what a diagnosis says of physics without a model; remove the entry")

@@ -7,7 +7,7 @@
 use crate::build::{Entry, Faults, Parts};
 use crate::measure::{Gauge, SensorEntry, SensorModel};
 use multibody::{Inertial, Joint};
-use sim::{BodyLaw, Grain, JointLaw, LineLaw, Load, PairLaw, Series, ShapeSpec};
+use sim::{BodyLaw, Grain, JointLaw, LineLaw, Load, MechanismKind, PairLaw, Series, ShapeSpec};
 use spatial::{InertiaError, Vec3};
 
 /// The stage, and the function.
@@ -46,6 +46,8 @@ pub(crate) enum Build {
     Pose(fn(&Entry<'_>, &mut ShapeSpec, bool)),
     /// A mount behind a contact part: it numbers coordinates and bodies anew, so it comes before all that is built on them.
     Mount(fn(&Entry<'_>, &mut Parts, &mut Faults<'_>)),
+    /// Other numbers in the law of a mechanism.
+    Mechanism(fn(&Entry<'_>, &mut MechanismKind)),
     /// What a sensor makes of a reading.
     Sensor(SensorBuild),
     /// A diagnosis, no model.

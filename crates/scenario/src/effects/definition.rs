@@ -127,6 +127,8 @@ pub enum PlaceKind {
     Contact,
     /// `actuator:name`, globs allowed.
     Actuator,
+    /// `mechanism:name`, globs allowed.
+    Mechanism,
     /// `sensor:` and a prefix of channels.
     Sensor,
     /// `world`.
@@ -142,6 +144,7 @@ impl PlaceKind {
             Self::Body => "body",
             Self::Contact => "contact",
             Self::Actuator => "actuator",
+            Self::Mechanism => "mechanism",
             Self::Sensor => "sensor",
             Self::World => "world",
         }

@@ -46,7 +46,7 @@ pub struct BodyFact {
     pub mask: [bool; 6],
     /// Whether it is a vehicle's base.
     pub is_base: bool,
-    /// Whether nothing but its own inertia moves it: no thruster, no contact.
+    /// Whether nothing but its own inertia moves it: no thruster, no contact, no mechanism.
     pub is_torque_free: bool,
 }
 
@@ -65,6 +65,17 @@ pub struct ContactFact {
     pub has_normal_motion: bool,
     /// Displacements of its second part that change nothing: shifts along, and turns about the axes of its link.
     pub unmoved_by: [bool; 6],
+}
+
+/// A strut, bushing, latch or weld.
+#[derive(Clone, Debug, Default)]
+pub struct MechanismFact {
+    /// Its name.
+    pub name: String,
+    /// Whether it has springs that a factor changes.
+    pub has_springs: bool,
+    /// Whether it has dampers likewise.
+    pub has_dampers: bool,
 }
 
 /// A sensor.
@@ -140,6 +151,13 @@ impl ContactFact {
     /// The numbers of its normal law, where its parts can part.
     pub fn moving_normal(&self) -> Option<[f64; 3]> {
         self.normal.filter(|_| self.has_normal_motion)
+    }
+}
+
+impl MechanismFact {
+    /// Its place.
+    pub fn place(&self) -> String {
+        format!("mechanism:{}", self.name)
     }
 }
 

@@ -4,7 +4,7 @@
 //! stands here, as data of its definition.
 
 use super::candidate::{Candidate, Coordinate};
-use super::facts::{ActuatorFact, BodyFact, ContactFact, JointFact, SensorFact, Survey};
+use super::facts::{ActuatorFact, BodyFact, ContactFact, JointFact, MechanismFact, SensorFact, Survey};
 use crate::spec::Tolerance;
 
 /// How a diagnosis looks for an effect.
@@ -48,6 +48,8 @@ pub enum Candidates {
     World(fn(&Survey<'_>) -> Vec<Candidate>),
     /// At contact pairs.
     Contact(fn(&ContactFact) -> Vec<Candidate>),
+    /// At mechanisms.
+    Mechanism(fn(&MechanismFact) -> Vec<Candidate>),
     /// At sensors.
     Sensor(fn(&SensorFact) -> Vec<Candidate>),
     /// Nowhere: it is what a diagnosis says when it finds no other.
@@ -68,9 +70,13 @@ impl Candidates {
     pub fn at_joint(&self, joint: &JointFact, survey: &Survey<'_>) -> Vec<Candidate> {
         match self {
             Self::Joint(of) | Self::JointAndBody { joint: of, .. } => of(joint, survey),
-            Self::Actuator(_) | Self::Body(_) | Self::World(_) | Self::Contact(_) | Self::Sensor(_) | Self::Nowhere => {
-                Vec::new()
-            }
+            Self::Actuator(_)
+            | Self::Body(_)
+            | Self::World(_)
+            | Self::Contact(_)
+            | Self::Mechanism(_)
+            | Self::Sensor(_)
+            | Self::Nowhere => Vec::new(),
         }
     }
 
@@ -83,6 +89,7 @@ impl Candidates {
             | Self::JointAndBody { .. }
             | Self::World(_)
             | Self::Contact(_)
+            | Self::Mechanism(_)
             | Self::Sensor(_)
             | Self::Nowhere => Vec::new(),
         }
@@ -96,6 +103,7 @@ impl Candidates {
             | Self::Actuator(_)
             | Self::World(_)
             | Self::Contact(_)
+            | Self::Mechanism(_)
             | Self::Sensor(_)
             | Self::Nowhere => Vec::new(),
         }
@@ -110,6 +118,7 @@ impl Candidates {
             | Self::Body(_)
             | Self::JointAndBody { .. }
             | Self::Contact(_)
+            | Self::Mechanism(_)
             | Self::Sensor(_)
             | Self::Nowhere => Vec::new(),
         }
@@ -124,6 +133,22 @@ impl Candidates {
             | Self::Body(_)
             | Self::JointAndBody { .. }
             | Self::World(_)
+            | Self::Mechanism(_)
+            | Self::Sensor(_)
+            | Self::Nowhere => Vec::new(),
+        }
+    }
+
+    /// Those at a mechanism.
+    pub fn at_mechanism(&self, mechanism: &MechanismFact) -> Vec<Candidate> {
+        match self {
+            Self::Mechanism(of) => of(mechanism),
+            Self::Joint(_)
+            | Self::Actuator(_)
+            | Self::Body(_)
+            | Self::JointAndBody { .. }
+            | Self::World(_)
+            | Self::Contact(_)
             | Self::Sensor(_)
             | Self::Nowhere => Vec::new(),
         }
@@ -139,6 +164,7 @@ impl Candidates {
             | Self::JointAndBody { .. }
             | Self::World(_)
             | Self::Contact(_)
+            | Self::Mechanism(_)
             | Self::Nowhere => Vec::new(),
         }
     }

@@ -44,6 +44,7 @@ mod joint_gear;
 mod joint_offset;
 mod joint_torque_ripple;
 mod joint_viscous_friction;
+mod mechanism;
 mod mount_compliance;
 mod payload;
 mod periodic_disturbance;
@@ -82,6 +83,7 @@ pub use joint_gear::{JOINT_BACKLASH, JOINT_ELASTICITY};
 pub use joint_offset::JOINT_OFFSET;
 pub use joint_torque_ripple::JOINT_TORQUE_RIPPLE;
 pub use joint_viscous_friction::{JOINT_QUADRATIC_FRICTION, JOINT_VISCOUS_ASYMMETRY, JOINT_VISCOUS_FRICTION};
+pub use mechanism::{MECHANISM_DAMPING, MECHANISM_STIFFNESS};
 pub use mount_compliance::MOUNT_COMPLIANCE;
 pub use parameter::{Neutral, Parameter, Shape};
 pub use payload::PAYLOAD;
@@ -101,12 +103,12 @@ pub(crate) use assembly::{Build, EditMass, GearSpec, PartBuild, SensorBuild};
 use crate::build::{Entry, Faults};
 use crate::spec::Tolerance;
 use candidate::{Along, Candidate, Coordinate, Encoding, ScreenPoint, dyad_axes, log_grid};
-use facts::{ActuatorFact, BodyFact, ContactFact, JointFact, SensorFact, Survey};
+use facts::{ActuatorFact, BodyFact, ContactFact, JointFact, MechanismFact, SensorFact, Survey};
 use identify::{Alternative, Candidates, Concerns, Identify, Minima, Start, Tier};
 use sim::Grain;
 
 /// All of them. At a place a diagnosis asks them in this order.
-pub static ALL: [&EffectDef; 49] = [
+pub static ALL: [&EffectDef; 51] = [
     &JOINT_VISCOUS_FRICTION,
     &JOINT_COULOMB_FRICTION,
     &JOINT_STRIBECK_FRICTION,
@@ -151,6 +153,8 @@ pub static ALL: [&EffectDef; 49] = [
     &FRICTION_VISCOUS,
     &FRICTION_ANISOTROPY,
     &FRICTION_DWELL_TIME,
+    &MECHANISM_STIFFNESS,
+    &MECHANISM_DAMPING,
     &SENSOR_BIAS,
     &SENSOR_SCALE,
     &SENSOR_MISALIGNMENT,

@@ -17,7 +17,7 @@ c = 0.8
 - At its *neutral* parameters it changes no bit of a run.
 - Parts that move inside a body (slosh, a flexible mode, an inner damper) change no total momentum.
 - Parameters are in SI without suffix. Vectors and tensors are lists: a tensor is xx, yy, zz, xy, xz, yz.
-- `place` is `joint:name`, `link:name`, `body:name` (any link), `contact:a/b` (shapes or links), `actuator:name`, `sensor:channel` or `world`; with the vehicle in
+- `place` is `joint:name`, `link:name`, `body:name` (any link), `contact:a/b` (shapes or links), `actuator:name`, `mechanism:name`, `sensor:channel` or `world`; with the vehicle in
   front (`joint:servicer/elbow`) where a name is not unique.
 
 In the tables a parameter's neutral value is the one at which it changes nothing (`nominal`: the value that the model has without the effect; –: a parameter of
@@ -33,18 +33,19 @@ use softdock::scenario::effects;
 let friction = effects::find("joint-viscous-friction").unwrap();
 let level = friction.parameter("b").unwrap();
 assert_eq!((friction.words, level.unit.turning), ("viscous friction", "N m s/rad"));
-assert_eq!(effects::models().count(), 48);
+assert_eq!(effects::models().count(), 50);
 ```
 
 "#;
 
 /// Headings, and the kinds of places at which the effects below them act first.
-const CHAPTERS: [(&str, &[PlaceKind]); 6] = [
+const CHAPTERS: [(&str, &[PlaceKind]); 7] = [
     ("At joints", &[PlaceKind::Joint]),
     ("At actuators", &[PlaceKind::Actuator]),
     ("At bodies and links", &[PlaceKind::Body, PlaceKind::Link]),
     ("Everywhere", &[PlaceKind::World]),
     ("At contacts", &[PlaceKind::Contact]),
+    ("At mechanisms", &[PlaceKind::Mechanism]),
     ("At sensors", &[PlaceKind::Sensor]),
 ];
 

@@ -145,6 +145,7 @@ fn build_of(effect: &Effect) -> Option<SensorBuild> {
         | Build::Pair(_)
         | Build::Pose(_)
         | Build::Mount(_)
+        | Build::Mechanism(_)
         | Build::NoModel => None,
     }
 }

@@ -10,7 +10,7 @@ use crate::overrides;
 use crate::spelling::hint_for_name;
 
 /// The kinds of places that an effect may have.
-const PLACES: &[&str] = &["joint", "link", "body", "contact", "actuator", "sensor", "world"];
+const PLACES: &[&str] = &["joint", "link", "body", "contact", "actuator", "mechanism", "sensor", "world"];
 
 /// The names that others refer to.
 pub(super) struct Names<'a> {
@@ -109,6 +109,8 @@ fn place(names: &Names<'_>, text: &str, path: &str) -> Option<Problem> {
     match (kind, rest.split_once('/')) {
         ("actuator", _) if is_glob(rest) => None,
         ("actuator", _) => actuator(names, rest, path),
+        ("mechanism", _) if is_glob(rest) => None,
+        ("mechanism", _) => known(&names.mechanisms, "mechanism", rest, path),
         ("joint" | "link" | "body", Some((vehicle, _))) if !is_glob(vehicle) => {
             known(&names.vehicles, "vehicle", vehicle, path)
         }

@@ -104,6 +104,16 @@ pub(super) fn actuators(entry: &Entry<'_>, parts: &Parts, faults: &mut Faults<'_
     found
 }
 
+/// The mechanisms that a place names, by a glob too.
+pub(super) fn mechanisms(entry: &Entry<'_>, parts: &Parts, faults: &mut Faults<'_>) -> Vec<usize> {
+    let all = &parts.mechanisms;
+    let found: Vec<usize> = (0..all.len()).filter(|i| glob_matches(entry.place, &all[*i].name)).collect();
+    if found.is_empty() {
+        faults.unknown(&entry.key("place"), "mechanism", entry.place, all.iter().map(|m| m.name.as_str()));
+    }
+    found
+}
+
 fn actuators_of_joints(entry: &Entry<'_>, parts: &Parts, faults: &mut Faults<'_>) -> Vec<usize> {
     let mut found = Vec::new();
     for site in joints(entry, &parts.vehicles, faults) {
