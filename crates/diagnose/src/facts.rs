@@ -99,7 +99,7 @@ fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
                 tapes.iter().flat_map(|t| &t.commands).filter(|c| drives(c.actuator) && c.what == Commanded::Effort);
             let largest = commands.flat_map(|c| &c.values).fold(0.0_f64, |m, e| m.max(e.abs()));
             all.push(JointFact {
-                name: joint.name.clone(),
+                name: joint_name(built, &vehicle.name, &joint.name),
                 coordinate,
                 armature: joint.armature,
                 largest_command: largest,
@@ -108,6 +108,22 @@ fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
         }
     }
     all
+}
+
+/// A joint as places call it: with its vehicle where several have one of that name.
+fn joint_name(built: &Built, vehicle: &str, name: &str) -> String {
+    let of = |v: &sim::Vehicle| v.tree.joints.iter().filter(|j| j.name == name && !j.is_mimic).count();
+    qualified(vehicle, name, built.model.vehicles.iter().map(of).sum())
+}
+
+/// A link likewise.
+fn link_name(built: &Built, vehicle: &str, name: &str) -> String {
+    let of = |v: &sim::Vehicle| v.tree.links.iter().filter(|l| l.name == name).count();
+    qualified(vehicle, name, built.model.vehicles.iter().map(of).sum())
+}
+
+fn qualified(vehicle: &str, name: &str, namesakes: usize) -> String {
+    if namesakes > 1 { format!("{vehicle}/{name}") } else { name.to_owned() }
 }
 
 /// How far a joint's readings go.
@@ -142,7 +158,7 @@ fn bodies(built: &Built) -> Vec<BodyFact> {
             let thrust = |k: &ActuatorKind| matches!(k, ActuatorKind::Thruster { body, .. } if *body == vehicle.body0);
             let pushed = built.model.actuators.iter().any(|a| thrust(&a.kind));
             all.push(BodyFact {
-                name: link.name.clone(),
+                name: link_name(built, &vehicle.name, &link.name),
                 vehicle: number,
                 mass: link.inertia.mass,
                 com: link.inertia.com(),

@@ -213,7 +213,7 @@ impl Controller for Grasper {
 }
 
 impl Grasper {
-    fn begin(&self, world: &World, memory: &mut Vec<f64>) {
+    fn begin(&self, world: &World, memory: &mut [f64]) {
         let n = self.drives.len();
         self.enter(world, memory, Phase::Reach);
         memory[slot::TOUCHED] = -1.0;

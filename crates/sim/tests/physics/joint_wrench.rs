@@ -73,7 +73,7 @@ fn a_scale_bears_its_pan_and_what_lies_on_it() {
         let vehicles = vec![(scale.clone(), Base::Fixed), (block(3.0, Vec3::repeat(0.05)), Base::Free)];
         let setup = Setup::new(integrator).gravity(DOWN);
         let mut world =
-            world(ModelSpec { shapes: shapes.clone(), pairs: vec![([0, 1], law.clone())], ..spec(vehicles, &setup) });
+            world(ModelSpec { shapes: shapes.clone(), pairs: vec![([0, 1], law)], ..spec(vehicles, &setup) });
         world.state_mut().bases[1] = Pose::translation(0.25, 0.02, 0.56);
         run(&mut world, 3000);
         let read = world.calc_joint_wrench(0, 1).unwrap();
