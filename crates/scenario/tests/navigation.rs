@@ -63,6 +63,8 @@ delay_s = 0.1
 const ENCODER: &str =
     "[[sensor]]\nname = \"encoder\"\nkind = \"joint-encoder\"\njoint = \"servicer/shoulder\"\nrate_hz = 200.0\n";
 const GYRO: &str = "[[sensor]]\nname = \"gyro\"\nkind = \"imu\"\nlink = \"servicer/bus\"\nrate_hz = 200.0\n";
+const SELFISH: &str =
+    "[[sensor]]\nname = \"mirror\"\nkind = \"pose\"\nlink = \"servicer/arm\"\nrelative_to = \"servicer/bus\"\n";
 const KNOWN: &str = "camera = \"camera\"\ngyro = \"gyro\"\n";
 
 fn load(text: &str) -> Result<Mission, scenario::ScenarioErrors> {
@@ -216,6 +218,7 @@ fn what_is_missing_is_told_with_the_way_out() {
         ),
         (ENCODER, "camera = \"encoder\"\n", "\"encoder\" is no sensor of kind pose that sees from a link"),
         (ENCODER, "camera = \"camra\"\n", "camera"),
+        (SELFISH, "camera = \"mirror\"\n", "\"mirror\" sees the vehicle that carries it"),
     ] {
         let error = load(&text("", sensors, known)).map(|_| ()).unwrap_err().to_string();
         assert!(error.contains(says), "{error}");

@@ -17,6 +17,7 @@ mod free_body;
 mod own;
 
 pub(crate) use free_body::{FreeBody, Mass};
+pub(crate) use own::{read_pose, write_pose};
 
 use crate::build::Faults;
 use crate::measure::{Quantity, Sight};
@@ -65,7 +66,7 @@ struct Target {
     at: usize,
 }
 
-/// Who sees what: own vehicle, target, and the sensors' names.
+/// The camera, and what it sees from where.
 struct Roles<'a> {
     camera: &'a SensorSpec,
     sight: Sight,
@@ -101,6 +102,13 @@ pub(crate) fn build(scenario: &Scenario, world: &World, faults: &mut Faults<'_>)
         return None;
     };
     let Quantity::SeenPosition(sight) = sensors[position].quantity() else { return None };
+    if sight.of.0 == sight.from.vehicle {
+        faults.add(
+            "navigation.camera",
+            format!("\"{name}\" sees the vehicle that carries it; let it see another one's link"),
+        );
+        return None;
+    }
     let camera = scenario.sensors.iter().find(|s| s.name == *name)?;
     let places: Vec<usize> = sensors
         .iter()

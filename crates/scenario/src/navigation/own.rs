@@ -287,12 +287,14 @@ fn follow(memory: &mut [f64], stamp: f64, position: f64) {
     }
 }
 
-fn write_pose(pose: &Pose, memory: &mut [f64]) {
+/// A pose into seven numbers of a memory: position, then x, y, z, w of the quaternion.
+pub(crate) fn write_pose(pose: &Pose, memory: &mut [f64]) {
     memory[..3].copy_from_slice(pose.translation.vector.as_slice());
     memory[3..7].copy_from_slice(pose.rotation.coords.as_slice());
 }
 
-fn read_pose(memory: &[f64]) -> Pose {
+/// The pose that [`write_pose`] wrote.
+pub(crate) fn read_pose(memory: &[f64]) -> Pose {
     let q = nalgebra::Quaternion::new(memory[6], memory[3], memory[4], memory[5]);
     Pose::from_parts(Vec3::from_column_slice(&memory[..3]).into(), Rot::new_normalize(q))
 }

@@ -20,7 +20,7 @@ use super::free_floating::{Arm, RateRequest, calc_bounded_error};
 use super::gripper::{self, Gripper};
 use super::trajectory::{Quintic, calc_rate};
 use crate::build::{ActuatorTable, Faults, solve_pose};
-use crate::navigation::{FreeBody, Mass};
+use crate::navigation::{FreeBody, Mass, read_pose, write_pose};
 use crate::spec::{Scenario, TrackAndGrasp};
 use multibody::{JointKind, calc_locked_inertia};
 use sim::{ActuatorKind, Command, Controller, Known, Model, World};
@@ -488,15 +488,4 @@ impl Grasper {
 /// The phase that a memory stands in.
 fn phase_in(memory: &[f64]) -> Phase {
     PHASES[memory[slot::PHASE] as usize]
-}
-
-fn write_pose(pose: &Pose, memory: &mut [f64]) {
-    memory[..3].copy_from_slice(pose.translation.vector.as_slice());
-    memory[3..7].copy_from_slice(pose.rotation.coords.as_slice());
-}
-
-fn read_pose(memory: &[f64]) -> Pose {
-    let q = spatial::nalgebra::Quaternion::new(memory[6], memory[3], memory[4], memory[5]);
-    let rotation = spatial::Rot::new_normalize(q);
-    Pose::from_parts(Vec3::from_column_slice(&memory[..3]).into(), rotation)
 }
