@@ -93,6 +93,35 @@ pub(crate) fn build(scenario: &Scenario, world: &World, faults: &mut Faults<'_>)
             return None;
         }
     };
+    let (seen, sight) = camera_of(name, &sensors, faults)?;
+    let camera = scenario.sensors.iter().find(|s| s.name == *name)?;
+    let places: Vec<usize> = sensors
+        .iter()
+        .scan(0, |at, sensor| {
+            let place = *at;
+            *at += sensor.memory_len();
+            Some(place)
+        })
+        .collect();
+    let said = sensors.iter().map(Sensor::memory_len).sum();
+    let own_at = said + SAID * sensors.len();
+    let own = own::build(scenario, world, &sensors, &Roles { camera, sight }, own_at, faults)?;
+    let target_at = own_at + own.memory_len();
+    let target = target(scenario, world, &sensors, (seen, sight), target_at, faults)?;
+    Some(Navigator {
+        places,
+        said,
+        own,
+        target,
+        scratch: Mutex::new(World::new(world.model().clone(), world.state().clone())),
+        start: world.state().clone(),
+        len: target_at + 1 + ESTIMATE,
+        sensors,
+    })
+}
+
+/// Position and attitude of what a camera sees, as indices of sensors, and the line of sight.
+fn camera_of(name: &str, sensors: &[Sensor], faults: &mut Faults<'_>) -> Option<([usize; 2], Sight)> {
     let find = |quantity: &str| sensors.iter().position(|s| s.name() == format!("sensor.{name}.{quantity}"));
     let (Some(position), Some(attitude)) = (find("position"), find("orientation")) else {
         let reason = format!(
@@ -109,30 +138,7 @@ pub(crate) fn build(scenario: &Scenario, world: &World, faults: &mut Faults<'_>)
         );
         return None;
     }
-    let camera = scenario.sensors.iter().find(|s| s.name == *name)?;
-    let places: Vec<usize> = sensors
-        .iter()
-        .scan(0, |at, sensor| {
-            let place = *at;
-            *at += sensor.memory_len();
-            Some(place)
-        })
-        .collect();
-    let said = sensors.iter().map(Sensor::memory_len).sum();
-    let own_at = said + SAID * sensors.len();
-    let own = own::build(scenario, world, &sensors, &Roles { camera, sight }, own_at, faults)?;
-    let target_at = own_at + own.memory_len();
-    let target = target(scenario, world, &sensors, ([position, attitude], sight), target_at, faults)?;
-    Some(Navigator {
-        places,
-        said,
-        own,
-        target,
-        scratch: Mutex::new(World::new(world.model().clone(), world.state().clone())),
-        start: world.state().clone(),
-        len: target_at + 1 + ESTIMATE,
-        sensors,
-    })
+    Some(([position, attitude], sight))
 }
 
 /// Whether a strategy asks where things are.
