@@ -8,7 +8,7 @@ use friction::Friction;
 use multibody::JointKind;
 use scenario::effects::facts::Survey;
 use scenario::measure::Quantity;
-use sim::{ActuatorKind, Bushing, MechanismKind};
+use sim::{ActuatorKind, MechanismKind};
 
 pub use scenario::effects::facts::{BodyFact, ContactFact, JointFact, MechanismFact, SensorFact};
 
@@ -173,15 +173,13 @@ fn bodies(built: &Built) -> Vec<BodyFact> {
 }
 
 fn mechanism(mechanism: &sim::Mechanism) -> MechanismFact {
-    let of_hold = |hold: &Bushing| {
-        let any = |along: &spatial::Vec3, about: &spatial::Vec3| along.amax().max(about.amax()) > 0.0;
-        (any(&hold.stiffness, &hold.torsional_stiffness), any(&hold.damping, &hold.torsional_damping))
-    };
-    let (has_springs, has_dampers) = match &mechanism.kind {
-        MechanismKind::Strut(strut) => (strut.stiffness > 0.0, strut.damping > 0.0),
-        MechanismKind::Bushing(hold) => of_hold(hold),
-        MechanismKind::Latch(latch) => of_hold(&latch.hold),
-        MechanismKind::Weld(weld) => of_hold(&weld.hold),
+    let any = |along: &spatial::Vec3, about: &spatial::Vec3| along.amax().max(about.amax()) > 0.0;
+    let (has_springs, has_dampers) = match (&mechanism.kind, mechanism.kind.hold()) {
+        (MechanismKind::Strut(strut), _) => (strut.stiffness > 0.0, strut.damping > 0.0),
+        (_, Some(hold)) => {
+            (any(&hold.stiffness, &hold.torsional_stiffness), any(&hold.damping, &hold.torsional_damping))
+        }
+        (_, None) => (false, false),
     };
     MechanismFact { name: mechanism.name.clone(), has_springs, has_dampers }
 }

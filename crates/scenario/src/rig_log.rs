@@ -156,7 +156,7 @@ fn commands_of(model: &Model) -> Vec<Commanded> {
 impl Observer for RigLog {
     fn observe(&mut self, world: &World) -> Flow {
         let mut sensors = std::mem::replace(&mut self.sensors, Readers::new(Vec::new()));
-        sensors.look(world, |sensor, arrival| {
+        sensors.look(world, |_, sensor, arrival| {
             for (channel, value) in sensor.names().zip(sensor.shown(arrival.value)) {
                 self.take(channel, arrival.arrives, value);
             }

@@ -213,8 +213,16 @@ impl Sensor {
         self.channels.iter().map(move |spec| reading[component(spec)])
     }
 
-    /// The next reading that has arrived by now; called in every step, so that none waits without a place.
-    pub(crate) fn arrived(&self, world: &World, memory: &mut [f64]) -> Option<Arrival> {
+    /// Reads the world if that is due, and tells what has arrived; called in every step, so that no reading waits without a place.
+    pub(crate) fn look(&self, world: &World, memory: &mut [f64], mut take: impl FnMut(&Arrival)) {
+        self.observe(world, memory);
+        while let Some(arrival) = self.arrived(world, memory) {
+            take(&arrival);
+        }
+    }
+
+    /// The next reading that has arrived by now.
+    fn arrived(&self, world: &World, memory: &mut [f64]) -> Option<Arrival> {
         if memory[slot::COUNT] == 0.0 {
             return None;
         }
@@ -231,7 +239,7 @@ impl Sensor {
     }
 
     /// Reads the world if that is due, and sends the reading on its way.
-    pub(crate) fn observe(&self, world: &World, memory: &mut [f64]) {
+    fn observe(&self, world: &World, memory: &mut [f64]) {
         if !self.is_due(world, memory) {
             return;
         }
@@ -356,12 +364,9 @@ impl Readers {
     }
 
     /// Lets all look, and tells what has arrived.
-    pub(crate) fn look(&mut self, world: &World, mut take: impl FnMut(&Sensor, &Arrival)) {
-        for (sensor, memory) in &mut self.0 {
-            sensor.observe(world, memory);
-            while let Some(arrival) = sensor.arrived(world, memory) {
-                take(sensor, &arrival);
-            }
+    pub(crate) fn look(&mut self, world: &World, mut take: impl FnMut(usize, &Sensor, &Arrival)) {
+        for (index, (sensor, memory)) in self.0.iter_mut().enumerate() {
+            sensor.look(world, memory, |arrival| take(index, sensor, arrival));
         }
     }
 }
@@ -386,12 +391,7 @@ impl Probe for Recorded {
     }
 
     fn observe(&mut self, world: &World) {
-        for ((sensor, memory), last) in self.readers.0.iter_mut().zip(&mut self.last) {
-            sensor.observe(world, memory);
-            while let Some(arrival) = sensor.arrived(world, memory) {
-                *last = arrival.value;
-            }
-        }
+        self.readers.look(world, |index, _, arrival| self.last[index] = arrival.value);
     }
 
     fn read(&mut self, _: &World, values: &mut Vec<f64>) {

@@ -220,9 +220,8 @@ attitude_noise_deg = 0.2
     near(2.0 * square.sqrt(), 0.2f64.to_radians(), 0.03);
 }
 
-#[test]
-fn every_kind_has_the_noise_the_rate_and_the_delay_that_were_asked_for() {
-    let text = r#"
+/// A table, and a body that a spring ties.
+const STAND: &str = r#"
 [[vehicle]]
 name = "table"
 urdf = "table.urdf"
@@ -238,90 +237,69 @@ kind = "bushing"
 a = { on = "world", position_m = [0.0, 5.0, 0.0] }
 b = { on = "tied/hull" }
 stiffness_n_per_m = 1.0
-[[sensor]]
-name = "encoder"
-kind = "joint-encoder"
-joint = "table/turn"
-rate_hz = 50.0
-delay_s = 0.03
-noise_deg = 0.1
-[[sensor]]
-name = "linear"
-kind = "joint-encoder"
-joint = "table/slide"
-rate_hz = 50.0
-delay_s = 0.03
-noise_m = 2e-4
-[[sensor]]
-name = "tachometer"
-kind = "tachometer"
-joint = "table/turn"
-rate_hz = 50.0
-delay_s = 0.03
-noise_rad_per_s = 4e-3
-[[sensor]]
-name = "imu"
-kind = "imu"
-link = "tied/hull"
-rate_hz = 50.0
-delay_s = 0.03
-accelerometer_noise_m_per_s2 = 5e-3
-[[sensor]]
-name = "camera"
-kind = "pose"
-link = "table/plate"
-relative_to = "table/base"
-rate_hz = 50.0
-delay_s = 0.03
-position_noise_m = 3e-3
-[[sensor]]
-name = "wrist"
-kind = "force-torque"
-joint = "table/turn"
-rate_hz = 50.0
-delay_s = 0.03
-force_noise_n = 0.2
-torque_noise_n_m = 0.03
-[[sensor]]
-name = "skin"
-kind = "contact-force"
-part = "table/plate"
-link = "table/plate"
-rate_hz = 50.0
-delay_s = 0.03
-force_noise_n = 0.4
-torque_noise_n_m = 0.05
-[[sensor]]
-name = "pull"
-kind = "mechanism-force"
-mechanism = "tie"
-rate_hz = 50.0
-delay_s = 0.03
-force_noise_n = 0.6
-torque_noise_n_m = 0.07
 "#;
-    let set = long(text);
-    for (quantity, asked) in [
-        ("joint.table/turn.position", 0.1f64.to_radians()),
-        ("joint.table/slide.position", 2e-4),
-        ("joint.table/turn.velocity", 4e-3),
-        ("sensor.imu.specific_force", 5e-3),
-        ("sensor.camera.position", 3e-3),
-        ("sensor.wrist.force", 0.2),
-        ("sensor.wrist.torque", 0.03),
-        ("sensor.skin.force", 0.4),
-        ("sensor.skin.torque", 0.05),
-        ("sensor.pull.force", 0.6),
-        ("sensor.pull.torque", 0.07),
-    ] {
+
+/// Sensors of every kind on it: name, the rest of the entry, and each quantity with the noise that is asked for; of an angle in degrees.
+type Asked = (&'static str, &'static str, &'static [(&'static str, f64)]);
+const ASKED: [Asked; 8] = [
+    (
+        "encoder",
+        "kind = 'joint-encoder'\njoint = 'table/turn'\nnoise_deg = 0.1",
+        &[("joint.table/turn.position", 0.1 / DEGREES)],
+    ),
+    (
+        "linear",
+        "kind = 'joint-encoder'\njoint = 'table/slide'\nnoise_m = 2e-4",
+        &[("joint.table/slide.position", 2e-4)],
+    ),
+    (
+        "tachometer",
+        "kind = 'tachometer'\njoint = 'table/turn'\nnoise_rad_per_s = 4e-3",
+        &[("joint.table/turn.velocity", 4e-3)],
+    ),
+    (
+        "imu",
+        "kind = 'imu'\nlink = 'tied/hull'\naccelerometer_noise_m_per_s2 = 5e-3",
+        &[("sensor.imu.specific_force", 5e-3)],
+    ),
+    (
+        "camera",
+        "kind = 'pose'\nlink = 'table/plate'\nrelative_to = 'table/base'\nposition_noise_m = 3e-3",
+        &[("sensor.camera.position", 3e-3)],
+    ),
+    (
+        "wrist",
+        "kind = 'force-torque'\njoint = 'table/turn'\nforce_noise_n = 0.2\ntorque_noise_n_m = 0.03",
+        &[("sensor.wrist.force", 0.2), ("sensor.wrist.torque", 0.03)],
+    ),
+    (
+        "skin",
+        "kind = 'contact-force'\npart = 'table/plate'\nlink = 'table/plate'\nforce_noise_n = 0.4\ntorque_noise_n_m = 0.05",
+        &[("sensor.skin.force", 0.4), ("sensor.skin.torque", 0.05)],
+    ),
+    (
+        "pull",
+        "kind = 'mechanism-force'\nmechanism = 'tie'\nforce_noise_n = 0.6\ntorque_noise_n_m = 0.07",
+        &[("sensor.pull.force", 0.6), ("sensor.pull.torque", 0.07)],
+    ),
+];
+/// In a radian.
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+#[test]
+fn every_kind_has_the_noise_the_rate_and_the_delay_that_were_asked_for() {
+    let entry =
+        |(name, rest, _): &Asked| format!("[[sensor]]\nname = '{name}'\nrate_hz = 50.0\ndelay_s = 0.03\n{rest}\n");
+    let set = long(&(STAND.to_owned() + &ASKED.iter().map(entry).collect::<String>()));
+    for (quantity, asked) in ASKED.iter().flat_map(|(_, _, quantities)| *quantities) {
         let is_scalar = quantity.starts_with("joint");
         let channels: Vec<String> = match is_scalar {
-            true => vec![quantity.to_owned()],
+            true => vec![(*quantity).to_owned()],
             false => AXES.iter().map(|k| format!("{quantity}.{k}")).collect(),
         };
         let square = |channel: &String| deviation(&series(&set, channel).1).powi(2);
         let sigma = (channels.iter().map(square).sum::<f64>() / channels.len() as f64).sqrt();
-        near(sigma, asked, 0.03);
+        near(sigma, *asked, 0.03);
         let (times, _) = series(&set, &channels[0]);
         assert!((times[0] - 0.03).abs() < 1e-9, "{quantity}: the first comes at {} s", times[0]);
         near((times.len() - 1) as f64 / (times[times.len() - 1] - times[0]), 50.0, 1e-3);

@@ -6,15 +6,12 @@
 //! forces of one's own; thrusters on that body, and parts that effects put inside it, count as before the joint.
 
 use crate::effect::EffectKind;
-use crate::model::{Integrator, Model};
+use crate::model::Model;
 use crate::step::calc_external;
-use crate::world::World;
+use crate::world::{GLANCE, World};
 use multibody::Tree;
 use spatial::{Frame, Inertia, Vec3, Wrench};
 use std::sync::Arc;
-
-/// Time over which momentum is differenced, s: as for accelerations.
-const GLANCE: f64 = 2e-5;
 
 /// The links that hang on a link, and it.
 struct Beyond {
@@ -61,9 +58,7 @@ impl World {
             return Some(Wrench::default());
         }
         let beyond = Beyond::new(tree, vehicle, link);
-        let ahead = Self::new(Arc::clone(self.model()), self.state().clone());
-        let mut ahead = ahead.without_books().with_integrator(Integrator::RungeKutta4);
-        ahead.ws.push.clone_from(&self.ws.push);
+        let mut ahead = self.fork();
         ahead.refresh_touches();
         let acting = ahead.calc_acting_on(&beyond);
         let before = ahead.calc_momentum_of(&beyond);

@@ -103,22 +103,22 @@ impl World {
             return;
         }
         self.refresh();
-        let mut sensed = std::mem::take(&mut self.state_parts().perception);
+        let mut sensed = std::mem::take(&mut self.state.perception);
         if let Some(perception) = &perception {
             perception.sense(self, &mut sensed);
         }
         if is_due {
-            let mut commands = std::mem::take(&mut self.state_parts().commands);
-            let mut memory = std::mem::take(&mut self.state_parts().controller);
+            let mut commands = std::mem::take(&mut self.state.commands);
+            let mut memory = std::mem::take(&mut self.state.controller);
             let mut act = |known: &Known<'_>| controller.command(known, &mut memory, &mut commands);
             match &perception {
                 None => act(&Known::truth(self)),
                 Some(perception) => perception.know(self, &mut sensed, &mut act),
             }
-            self.state_parts().commands = commands;
-            self.state_parts().controller = memory;
+            self.state.commands = commands;
+            self.state.controller = memory;
         }
-        self.state_parts().perception = sensed;
+        self.state.perception = sensed;
     }
 
     /// Runs until `steps` steps have been made since the start, an observer stops it, or it diverges.

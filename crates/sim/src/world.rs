@@ -67,7 +67,7 @@ pub struct Rest {
 }
 
 /// Time over which accelerations are taken, s: 10⁻¹⁰ of a motion's second derivative is missed, 10⁻¹¹ of its rate is round-off.
-const GLANCE: f64 = 2e-5;
+pub(crate) const GLANCE: f64 = 2e-5;
 /// Speeds (m/s) beyond which a run counts as diverged.
 const MAX_SPEED: f64 = 1e6;
 
@@ -129,11 +129,6 @@ impl World {
     /// The commands that act from now on.
     pub fn commands_mut(&mut self) -> &mut [Command] {
         &mut self.state.commands
-    }
-
-    /// The state, of which commands and memories of controllers are changed: they change nothing about where anything is.
-    pub(crate) fn state_parts(&mut self) -> &mut State {
-        &mut self.state
     }
 
     /// Brings kinematics and twists up to a state that was changed.
@@ -445,14 +440,20 @@ impl World {
         self.ws.kin[vehicle].link_twist(&self.model.vehicles[vehicle].tree, link)
     }
 
+    /// The same world under Runge–Kutta and without books, to look ahead with.
+    pub(crate) fn fork(&self) -> Self {
+        let fork = Self::new(Arc::clone(&self.model), self.state.clone());
+        let mut fork = fork.without_books().with_integrator(Integrator::RungeKutta4);
+        fork.ws.push.clone_from(&self.ws.push);
+        fork
+    }
+
     /// Rate of change of a link's twist about its own origin, W axes, m/s² and rad/s², from this instant on with the commands that act.
     ///
     /// By differences of motion over 20 µs and twice that under Runge–Kutta, second order: with all that acts, whatever it is. The world itself stays
     /// where it is. None where it would diverge.
     pub fn calc_link_acceleration(&self, vehicle: usize, link: usize) -> Option<Twist> {
-        let ahead = Self::new(Arc::clone(&self.model), self.state.clone());
-        let mut ahead = ahead.without_books().with_integrator(Integrator::RungeKutta4);
-        ahead.ws.push.clone_from(&self.ws.push);
+        let mut ahead = self.fork();
         let before = ahead.link_twist(vehicle, link);
         let mut glance = || ahead.advance_by(GLANCE).ok().map(|()| ahead.link_twist(vehicle, link) - before);
         let (near, far) = (glance()?, glance()?);

@@ -154,13 +154,12 @@ fn finish(
 ) -> Result<Mission, ScenarioErrors> {
     check_sensors(scenario, model, &mut faults);
     approach::check_docking(scenario, model, &mut faults);
-    let mut world = mechanisms::settle(scenario, start::world(scenario, model, table, &mut faults));
+    let world = mechanisms::settle(scenario, start::world(scenario, model, table, &mut faults));
     missing::check_freedoms(&world, &files.warnings, &mut faults);
     let controller = strategy::build(scenario, model, table, &mut faults);
     let navigator = navigation::build(scenario, &world, &mut faults).map(Arc::new);
     let Some(controller) = controller.filter(|_| faults.is_empty()) else { return Err(faults.into_errors()) };
-    world.perceive(navigator.clone().map(|known| known as Arc<dyn sim::Perception>));
-    Ok(Mission {
+    let mut mission = Mission {
         scenario: scenario.clone(),
         robots: files.robots,
         robot_warnings: files.warnings,
@@ -170,7 +169,10 @@ fn finish(
         navigator,
         steps: (scenario.duration_s / scenario.integrator.step_s).round().max(1.0) as u64,
         steps_per_sample: samples(scenario),
-    })
+    };
+    let perception = mission.perception();
+    mission.world.perceive(perception);
+    Ok(mission)
 }
 
 fn samples(scenario: &Scenario) -> u64 {

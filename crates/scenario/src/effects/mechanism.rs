@@ -2,7 +2,7 @@
 
 use super::*;
 use parameter::{AT_LEAST_ZERO, POSITIVE, zero};
-use sim::{Bushing, MechanismKind};
+use sim::MechanismKind;
 use unit::NONE;
 
 /// Factors at which one is screened as well as beside nominal.
@@ -19,11 +19,12 @@ pub static MECHANISM_STIFFNESS: EffectDef = EffectDef {
     source: "A linear law scaled; laws in `crates/sim/src/mechanism`.",
     build: Build::Mechanism(|entry, kind| {
         let factor = entry.number("factor");
-        match kind {
-            MechanismKind::Strut(strut) => strut.stiffness *= factor,
-            MechanismKind::Bushing(hold) => stiffen(hold, factor),
-            MechanismKind::Latch(latch) => stiffen(&mut latch.hold, factor),
-            MechanismKind::Weld(weld) => stiffen(&mut weld.hold, factor),
+        if let MechanismKind::Strut(strut) = kind {
+            strut.stiffness *= factor;
+        }
+        if let Some(hold) = kind.hold_mut() {
+            hold.stiffness *= factor;
+            hold.torsional_stiffness *= factor;
         }
     }),
     identify: Identify {
@@ -51,11 +52,12 @@ pub static MECHANISM_DAMPING: EffectDef = EffectDef {
     source: "A linear law scaled; laws in `crates/sim/src/mechanism`.",
     build: Build::Mechanism(|entry, kind| {
         let factor = entry.number("factor");
-        match kind {
-            MechanismKind::Strut(strut) => strut.damping *= factor,
-            MechanismKind::Bushing(hold) => damp(hold, factor),
-            MechanismKind::Latch(latch) => damp(&mut latch.hold, factor),
-            MechanismKind::Weld(weld) => damp(&mut weld.hold, factor),
+        if let MechanismKind::Strut(strut) = kind {
+            strut.damping *= factor;
+        }
+        if let Some(hold) = kind.hold_mut() {
+            hold.damping *= factor;
+            hold.torsional_damping *= factor;
         }
     }),
     identify: Identify {
@@ -71,16 +73,6 @@ pub static MECHANISM_DAMPING: EffectDef = EffectDef {
     shown: Shown::Each,
     corrects: Corrects::DataSheet,
 };
-
-fn stiffen(hold: &mut Bushing, factor: f64) {
-    hold.stiffness *= factor;
-    hold.torsional_stiffness *= factor;
-}
-
-fn damp(hold: &mut Bushing, factor: f64) {
-    hold.damping *= factor;
-    hold.torsional_damping *= factor;
-}
 
 fn at(mechanism: &MechanismFact) -> Vec<Candidate> {
     let coordinates = vec![Coordinate::log("factor", 1.0, [1e-2, 1e2])];

@@ -108,9 +108,14 @@ impl Estimate {
 
     /// J⁻¹, W axes.
     fn calc_inverse_inertia(&self) -> Mat3 {
-        let rot = self.body.rot_wb.to_rotation_matrix();
-        rot.matrix() * self.body.mass.inverse_b * rot.matrix().transpose()
+        turned(&self.body.rot_wb, &self.body.mass.inverse_b)
     }
+}
+
+/// A tensor of the body in W axes.
+fn turned(rot_wb: &Rot, tensor_b: &Mat3) -> Mat3 {
+    let rot = rot_wb.to_rotation_matrix();
+    rot.matrix() * tensor_b * rot.matrix().transpose()
 }
 
 impl TargetFilter {
@@ -140,8 +145,7 @@ impl TargetFilter {
 
     /// J, W axes.
     fn calc_inertia(&self, rot_wb: &Rot) -> Mat3 {
-        let rot = rot_wb.to_rotation_matrix();
-        rot.matrix() * self.mass.tensor_b * rot.matrix().transpose()
+        turned(rot_wb, &self.mass.tensor_b)
     }
 
     /// Takes the estimate to the stamp of a pose, W, and takes the pose in. One that cannot be is refused.

@@ -309,13 +309,12 @@ impl Perception for Navigator {
             (0..self.sensors.len()).for_each(|k| memory[self.said + SAID * k] = -1.0);
         }
         for (k, sensor) in self.sensors.iter().enumerate() {
-            let own = self.memory_of(k);
-            sensor.observe(world, &mut memory[own.clone()]);
-            while let Some(arrival) = sensor.arrived(world, &mut memory[own.clone()]) {
-                let said = &mut memory[self.said + SAID * k..][..SAID];
+            let (own, said) = memory.split_at_mut(self.said);
+            let said = &mut said[SAID * k..][..SAID];
+            sensor.look(world, &mut own[self.memory_of(k)], |arrival| {
                 (said[0], said[1]) = (arrival.taken, arrival.arrives);
                 said[2..].copy_from_slice(&arrival.value);
-            }
+            });
         }
     }
 

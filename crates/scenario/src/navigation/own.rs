@@ -184,7 +184,7 @@ impl OwnShip {
         let kept = world.kinematics(self.vehicle).vel[0];
         let Some(spin_b) = spin_b else { return kept };
         let spin = world.state().bases[self.vehicle].rotation * spin_b;
-        let mut twists: Vec<Twist> = (0..world.model().vehicles.len()).map(|v| world.kinematics(v).vel[0]).collect();
+        let mut twists = twists_of(world);
         twists[self.vehicle] = Twist::new(spin, Vec3::zeros());
         world.set_base_twists(&twists);
         let lacks = self.momentum.force - world.state().momentum[self.vehicle].force;
@@ -196,7 +196,7 @@ impl OwnShip {
     /// Sets the twist of another vehicle, and the own one's again.
     pub(super) fn set_twists(&self, world: &mut World, memory: &[f64], other: (usize, Twist)) {
         world.refresh();
-        let mut twists: Vec<Twist> = (0..world.model().vehicles.len()).map(|v| world.kinematics(v).vel[0]).collect();
+        let mut twists = twists_of(world);
         twists[self.vehicle] = self.read_twist(memory);
         twists[other.0] = other.1;
         world.set_base_twists(&twists);
@@ -273,6 +273,11 @@ impl OwnShip {
             }
         }
     }
+}
+
+/// The base twists of all vehicles.
+fn twists_of(world: &World) -> Vec<Twist> {
+    (0..world.model().vehicles.len()).map(|v| world.kinematics(v).vel[0]).collect()
 }
 
 /// A joint's rate from what its encoder says: stamp, position and rate in `memory`, smoothed over [`SMOOTHING`].

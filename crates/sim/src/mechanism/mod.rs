@@ -200,6 +200,16 @@ impl RowForce {
 }
 
 impl MechanismKind {
+    /// What [`Self::hold`] gives, to be changed.
+    pub fn hold_mut(&mut self) -> Option<&mut Bushing> {
+        match self {
+            Self::Strut(_) => None,
+            Self::Bushing(hold) => Some(hold),
+            Self::Latch(latch) => Some(&mut latch.hold),
+            Self::Weld(weld) => Some(&mut weld.hold),
+        }
+    }
+
     /// What it remembers at the start.
     pub(crate) fn start(&self) -> MechanismMemory {
         let status = if matches!(self, Self::Latch(_)) { MechanismStatus::Open } else { MechanismStatus::Engaged };
@@ -207,7 +217,7 @@ impl MechanismKind {
     }
 
     /// The bushing that holds, if it is one.
-    fn hold(&self) -> Option<&Bushing> {
+    pub fn hold(&self) -> Option<&Bushing> {
         match self {
             Self::Strut(_) => None,
             Self::Bushing(bushing) => Some(bushing),
