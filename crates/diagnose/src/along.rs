@@ -1,4 +1,4 @@
-//! A search along whole runs, for rigs whose parts do not touch, and what the rest of a diagnosis asks of it.
+//! A search along whole runs, and what the rest of a diagnosis asks of it.
 
 use crate::attempt::Attempt;
 use crate::catalogue;
@@ -36,8 +36,12 @@ const LAST: Reach = Reach { iterations: 4, reuse: false };
 /// Iterations with the nominal numbers free within their tolerances.
 const WITHIN: Reach = Reach { iterations: 6, reuse: true };
 
-/// Searches along the runs that may be fitted.
-pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Course, DiagnoseError> {
+/// Searches along the runs that may be fitted, from a set that was found otherwise, or from none.
+pub(crate) fn seek(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    (own, known): (&Facts, &EffectSet),
+) -> Result<Course, DiagnoseError> {
     let problem = Problem { runs: spokesmen(stage, plant)?, ..problem(stage, plant, own, Role::Fit) };
     let mut nominal = problem.begin()?;
     let left = remainder(&problem, &nominal)?;
@@ -50,10 +54,20 @@ pub(crate) fn seek(stage: &Stage<'_>, plant: &Plant, own: &Facts) -> Result<Cour
     let hypotheses = |now: &Fitted| hypotheses_of(&problem, now, own);
     let usual = || catalogue::within(&Facts::new(&nominal.built, stage.tapes), &USUAL);
     let numbers = plant.scenario.tolerance.is_exact().then(usual);
-    let found = search(&problem, nominal, &hypotheses, numbers)?;
+    let begun = (!known.members.is_empty()).then(|| beginning(&problem, &nominal, known)).transpose()?;
+    let found = search(&problem, (nominal, begun), &hypotheses, numbers)?;
     let after = remainder(&problem, &found.best)?;
     stage.work.watch.step(&format!("what was found leaves {:.1}, noise at most {:.1}", after.rise, after.bound));
     Ok(Course { found, left: [left, after] })
+}
+
+/// What was found otherwise along the runs: from states of its own, fitted to its end.
+fn beginning(problem: &Problem<'_>, nominal: &Fitted, known: &EffectSet) -> Result<Fitted, DiagnoseError> {
+    let own = problem.begin_with(known)?;
+    let begun = to_the_end(problem, problem.fit(&own, known.clone(), WITHIN)?);
+    let [before, after] = [nominal.score, begun.score];
+    problem.stage.work.watch.step(&format!("with what is known: −2 log L {before:.1} → {after:.1}"));
+    Ok(begun)
 }
 
 /// The runs that are searched along: of many an even selection, by how many steps of a body they take.

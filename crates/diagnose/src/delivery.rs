@@ -11,6 +11,7 @@
 use crate::along::{self, Course};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
+use crate::fit::EffectSet;
 use crate::fit::Effort;
 use crate::identify::fit::{Fitted, Problem};
 use crate::identify::track::Track;
@@ -53,11 +54,12 @@ pub(crate) fn sought_along(
     stage: &Stage<'_>,
     plant: &Plant,
     (own, window): (&Facts, f64),
+    known: &EffectSet,
 ) -> Result<Result<Course, Raised>, DiagnoseError> {
     if let Some(raised) = missing_beyond_limits(stage, plant, own)? {
         return Ok(Err(raised));
     }
-    let course = along::seek(stage, plant, own)?;
+    let course = along::seek(stage, plant, (own, known))?;
     if course.left[1].is_noise() {
         return Ok(Ok(course));
     }

@@ -11,8 +11,9 @@ use crate::diagnosis::Rival;
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, Fit};
+use crate::held::holds;
 use crate::identify::fit::{Fitted, Problem};
-use crate::identify::track::{Interval, Track, may_follow};
+use crate::identify::track::{Interval, Track};
 use crate::linear::Stage;
 use crate::pace;
 use crate::plant::{Built, Plant};
@@ -72,12 +73,12 @@ fn found_in(
 ) -> Result<Option<Flown>, DiagnoseError> {
     let Some(free) = without_touches(plant) else { return Ok(None) };
     let Ok(built) = free.build(&[]) else { return Ok(None) };
-    if !may_follow(&built) {
+    if holds(&built) {
         return Ok(None);
     }
     let Some((tapes, pace)) = flown(stage, (&free, &built), (flights, own, window))? else { return Ok(None) };
     let flying = Stage { tapes: &tapes, pace, ..*stage };
-    let course = along::seek(&flying, &free, own)?;
+    let course = along::seek(&flying, &free, (own, &EffectSet::default()))?;
     let course = along::told_by_all_runs(&flying, &free, own, course)?;
     let [before, after] = course.left;
     let best = &course.found.best.set;

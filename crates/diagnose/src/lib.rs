@@ -28,6 +28,7 @@ mod feed;
 pub mod fit;
 mod flown;
 pub mod guess;
+pub mod held;
 pub mod hypothesis;
 pub mod identify;
 pub mod judge;

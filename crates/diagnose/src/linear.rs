@@ -9,7 +9,7 @@
 //! H_ss is damped, so that a start that nothing shows stays put, and a bristle that slides already does not run off). Sums of K over segments hold everything that a step of a fit and a score
 //! test need.
 
-use crate::identify::track::may_follow;
+use crate::held::holds;
 use crate::pace::touches;
 use crate::plant::Built;
 use crate::replay::{Pace, Span, readings, residuals_of};
@@ -198,7 +198,7 @@ impl Stage<'_> {
 
     fn readings_from(&self, built: &Built, segment: &Segment, start: &Start) -> Option<Vec<Measured>> {
         let tape = &self.tapes[segment.run];
-        let heard = self.hears.filter(|_| may_follow(built)).map_or(tape, |longest| tape.heard_at(longest));
+        let heard = self.hears.filter(|_| !holds(built)).map_or(tape, |longest| tape.heard_at(longest));
         let found = readings(built, tape, heard, start, segment.span, self.pace);
         let work = found.as_ref().map_or_else(|_| sim::Work::default(), |r| r.work);
         self.work.add(segment.span.to - segment.span.from, built.model.owners.len(), &work);

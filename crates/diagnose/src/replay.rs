@@ -485,4 +485,4 @@ fn events_in(tape: &Tape, span: Span, sensors: &[(Gauge, SensorModel)]) -> Vec<(
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

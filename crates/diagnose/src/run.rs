@@ -18,8 +18,8 @@ use crate::evidence::{self, Evidence};
 use crate::excerpts;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, Effort, Fit, UNDAMPED, fit};
+use crate::held::{engages, holds};
 use crate::identify::fit::Fitted;
-use crate::identify::track::may_follow;
 use crate::judge::{Judgement, judge};
 use crate::limits;
 use crate::linear::{self, Segment, Stage, Steps};
@@ -88,36 +88,58 @@ pub fn diagnose_with(
 ) -> Result<(Diagnosis, Evidence), DiagnoseError> {
     let some = excerpts::of(set);
     let set = some.as_ref().unwrap_or(set);
-    // Where runs as a whole leave far more than noise, or parts touch, windows are asked as well.
-    let whole = diagnose_whole(scenario.clone(), set, &Work::new(watch, ALONG * effort)).unwrap_or_else(|error| {
-        watch.step(&format!("along whole runs nothing was found: {error}"));
-        None
-    });
-    if let Some(whole) = whole {
+    let built = Plant::new(scenario.clone()).build(&[])?;
+    // What has engaged before a window begins is not told by its samples.
+    if holds(&built) && !engages(&built) {
+        return diagnose_in_windows(scenario, set, &Work::new(watch, effort), true);
+    }
+    // Where runs as a whole leave far more than noise windows are asked as well.
+    if let Some(whole) = along_whole_runs(&scenario, (set, &EffectSet::default()), &Work::new(watch, ALONG * effort)) {
         if is_near_noise(&whole.0) {
             return Ok(whole);
         }
         watch.step("what whole runs leave is far beyond noise: windows");
-        let found = diagnose_in_windows(scenario, set, &Work::new(watch, effort))?;
+        let found = diagnose_in_windows(scenario, set, &Work::new(watch, effort), false)?;
         let [one, other] = [&found.0, &whole.0].map(|d| 100.0 * merit(d));
         watch.step(&format!("explained: {one:.1} % in windows, {other:.1} % along whole runs"));
         return Ok(if is_clearly_better(&found.0, &whole.0) { found } else { whole });
     }
-    diagnose_in_windows(scenario, set, &Work::new(watch, effort))
+    diagnose_in_windows(scenario, set, &Work::new(watch, effort), false)
+}
+
+/// What whole runs say, from what is known already; none where they cannot be followed.
+fn along_whole_runs(
+    scenario: &Scenario,
+    (set, known): (&RecordingSet, &EffectSet),
+    work: &Work<'_>,
+) -> Option<(Diagnosis, Evidence)> {
+    let found = diagnose_whole(scenario.clone(), (set, known), work);
+    found.inspect_err(|error| work.watch.step(&format!("along whole runs nothing was found: {error}"))).ok()
 }
 
 /// What may be done along whole runs, relative to the usual: as much as in windows of two lengths.
 const ALONG: f64 = 2.0;
 
-/// The same in windows of one length, and of another where that explains too little.
+/// The same in windows of one length, and of another where that explains too little; along whole runs as well where that leaves something and they may say
+/// more (`or_whole`).
 fn diagnose_in_windows(
     scenario: Scenario,
     set: &RecordingSet,
     work: &Work<'_>,
+    or_whole: bool,
 ) -> Result<(Diagnosis, Evidence), DiagnoseError> {
     let watch = work.watch;
     let [first, second] = WINDOWS;
-    let mut found = diagnose_in(scenario.clone(), set, work, first)?;
+    let (mut found, known) = diagnose_in(scenario.clone(), set, work, first)?;
+    if or_whole && !found.0.verdict.is_good() {
+        watch.step("windows leave something: along whole runs");
+        // Far beyond noise windows are as good: what the laws do not have is in both.
+        let known = if found.0.verdict.is_found() { known } else { EffectSet::default() };
+        let whole = along_whole_runs(&scenario, (set, &known), &work.anew_times(ALONG));
+        if let Some(whole) = whole.filter(|whole| whole.0.verdict.is_good()) {
+            return Ok(whole);
+        }
+    }
     if merit(&found.0) >= SETTLED || set.window_s.is_some() {
         return Ok(found);
     }
@@ -128,7 +150,7 @@ fn diagnose_in_windows(
     }
     watch.step("that explains too little: windows of another length");
     // What was sought in vain is not taken from what may be found.
-    let other = diagnose_in(scenario, set, &work.anew(), second)?;
+    let (other, _) = diagnose_in(scenario, set, &work.anew(), second)?;
     Ok(if merit(&other.0) > merit(&found.0) { other } else { found })
 }
 
@@ -143,12 +165,30 @@ struct Prepared<'w> {
     clock: Clock<'w>,
 }
 
-/// The longest run in so many windows.
+/// How a search goes.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    /// In so many windows of the longest run.
+    Windows(f64),
+    /// Along whole runs; what is told in windows is in those that a search begins with.
+    Runs,
+}
+
+impl Way {
+    /// Windows of the longest run.
+    fn parts(self) -> f64 {
+        match self {
+            Self::Windows(parts) => parts,
+            Self::Runs => WINDOWS[0],
+        }
+    }
+}
+
 fn prepare<'w>(
     scenario: Scenario,
     set: &RecordingSet,
     work: &'w Work<'w>,
-    parts: f64,
+    way: Way,
 ) -> Result<Prepared<'w>, DiagnoseError> {
     let mut clock = Clock::new(work);
     clock.stage("inspect the recording", 0.0);
@@ -164,26 +204,26 @@ fn prepare<'w>(
         plant = Plant::new(scenario);
         (tapes, built) = load(&mut plant, set)?;
     }
-    let window = window_of(set, &tapes, parts);
+    let window = window_of(set, &tapes, way.parts());
     if let Some((scenario, words)) = delivery::delivered((&plant, &built), &[], (&tapes, window), work)? {
         said.extend(words);
         plant = plant.of(scenario);
         built = plant.build(&[])?;
     }
-    let mut begun = begin(&plant, (&built, tapes), set, parts, &mut clock)?;
+    let mut begun = begin(&plant, (&built, tapes), set, way, &mut clock)?;
     said.extend(pace::said_of_scheme(own, &plant));
     begun.said.extend(said);
     Ok(Prepared { plant, inspection, begun, clock })
 }
 
-/// The same in so many windows of the longest run.
+/// The same in so many windows of the longest run, and what was found as it was fitted.
 fn diagnose_in(
     scenario: Scenario,
     set: &RecordingSet,
     work: &Work<'_>,
     parts: f64,
-) -> Result<(Diagnosis, Evidence), DiagnoseError> {
-    let Prepared { plant, inspection, begun, mut clock } = prepare(scenario, set, work, parts)?;
+) -> Result<((Diagnosis, Evidence), EffectSet), DiagnoseError> {
+    let Prepared { plant, inspection, begun, mut clock } = prepare(scenario, set, work, Way::Windows(parts))?;
     let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } = begun;
     let pace = discretisation.pace;
     let mut stage = Stage { tapes: &thinned, pace, work, doubt, hears: None };
@@ -229,29 +269,25 @@ fn diagnose_in(
         timings: clock.timings,
         discretisation,
     };
-    Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario, &set.folder))
+    let told = tell::tell(&findings, &stage, &inspection, &plant.scenario, &set.folder);
+    Ok((told, findings.found.set))
 }
 
-/// The same along whole runs; none where parts touch.
+/// The same along whole runs.
 fn diagnose_whole(
     scenario: Scenario,
-    set: &RecordingSet,
+    (set, known): (&RecordingSet, &EffectSet),
     work: &Work<'_>,
-) -> Result<Option<(Diagnosis, Evidence)>, DiagnoseError> {
-    if !may_follow(&Plant::new(scenario.clone()).build(&[])?) {
-        return Ok(None);
-    }
-    let Prepared { plant, inspection, begun, mut clock } = prepare(scenario, set, work, WINDOWS[0])?;
+) -> Result<(Diagnosis, Evidence), DiagnoseError> {
+    let Prepared { plant, inspection, begun, mut clock } = prepare(scenario, set, work, Way::Runs)?;
     let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } = begun;
     let few = &Stage { tapes: &thinned, pace: discretisation.pace, work, doubt, hears: None };
     let plant = &plant;
-    clock.stage("locate the missing force", 0.15);
     let own = Facts::new(&nominal.built, few.tapes);
-    let located = locate(few, plant, &nominal, places(&own, window))?;
-    clock.stage("search", 0.25);
-    let course = match delivery::sought_along(few, plant, (&own, window))? {
+    clock.stage("search", 0.15);
+    let course = match delivery::sought_along(few, plant, (&own, window), known)? {
         Ok(course) => course,
-        Err(raised) => return diagnose_raised(raised, set, work),
+        Err(raised) => return diagnose_raised(raised, (set, known), work),
     };
     clock.stage("fit to all samples", 0.7);
     let (course, discretisation) = along::at_suiting_steps(few, plant, &own, (course, window), discretisation)?;
@@ -263,8 +299,12 @@ fn diagnose_whole(
     said.extend(work.was_ended().then(|| SPENT.to_owned()));
     clock.stage("predict every run", 0.8);
     let best = &course.found.best;
-    let Predicted { found, follows, judgement } =
+    let Predicted { known, found, follows, judgement } =
         predict_along((few, &stage), plant, (&course, thin_best), (&own, window))?;
+    // What holds begins in windows as whole runs say.
+    let nominal = if holds(&nominal.built) { known } else { nominal };
+    clock.stage("locate the missing force", 0.9);
+    let located = locate(few, plant, &nominal, places(&own, window))?;
     let left = left_by((few, few), plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
     let (explained, helps) = share::explained(&judgement, &tapes, &found, window);
@@ -290,23 +330,25 @@ fn diagnose_whole(
         timings: clock.timings,
         discretisation,
     };
-    Ok(Some(tell::tell(&findings, &stage, &inspection, &plant.scenario, &set.folder)))
+    Ok(tell::tell(&findings, &stage, &inspection, &plant.scenario, &set.folder))
 }
 
 /// The same of a scenario whose limits were raised.
 fn diagnose_raised(
     (scenario, words): Raised,
-    set: &RecordingSet,
+    known: (&RecordingSet, &EffectSet),
     work: &Work<'_>,
-) -> Result<Option<(Diagnosis, Evidence)>, DiagnoseError> {
+) -> Result<(Diagnosis, Evidence), DiagnoseError> {
     words.iter().for_each(|w| work.watch.step(w));
-    let mut found = diagnose_whole(scenario, set, &work.anew())?;
-    found.iter_mut().for_each(|(diagnosis, _)| diagnosis.remarks.extend(words.iter().cloned()));
+    let mut found = diagnose_whole(scenario, known, &work.anew())?;
+    found.0.remarks.extend(words.iter().cloned());
     Ok(found)
 }
 
 /// What whole runs and windows are predicted to be, by the nominal and by the corrected model.
 struct Predicted {
+    /// The nominal model in windows of the runs that are fitted.
+    known: Fit,
     found: Fit,
     follows: bool,
     judgement: Judgement,
@@ -335,7 +377,8 @@ fn predict_along(
     let goes_astray = |run: usize| error(run, false) >= lost::NEAR && error(run, true) < lost::NEAR;
     let follows = follows && !(0..all.tapes.len()).any(goes_astray);
     let found = along::as_fit(few, best, if follows { whole.segments } else { windows });
-    Ok(Predicted { found, follows, judgement })
+    let segments = known.segments.into_iter().filter(|s| few.tapes[s.run].role == Role::Fit).collect();
+    Ok(Predicted { known: Fit { segments, ..known }, found, follows, judgement })
 }
 
 /// What was detected, what was found, and what of it remains.
@@ -394,11 +437,11 @@ fn begin(
     plant: &Plant,
     (built, tapes): (&Built, Vec<Tape>),
     set: &RecordingSet,
-    parts: f64,
+    way: Way,
     clock: &mut Clock<'_>,
 ) -> Result<Begun, DiagnoseError> {
     let (tapes, mut said) = noise::clean(set, tapes);
-    let window = window_of(set, &tapes, parts);
+    let window = window_of(set, &tapes, way.parts());
     let own = plant.scenario.integrator.step_s;
     let thin = |tapes: &[Tape]| tapes.iter().map(|t| t.thinned(ENOUGH)).collect::<Vec<Tape>>();
     let thinned = thin(&tapes);
@@ -409,7 +452,10 @@ fn begin(
     let guessed = chosen(&stage, built, &segments, own);
     clock.stage("fit the starts of the nominal model", 0.05);
     let mut stage = Stage { pace: guessed.pace, ..stage };
-    let mut nominal = fit(&stage, plant, EffectSet::default(), segments, Effort::STARTS)?;
+    // Along whole runs states through touches come from what went before.
+    let is_followed = way == Way::Runs && holds(built);
+    let effort = if is_followed { Effort { iterations: 0, ..Effort::STARTS } } else { Effort::STARTS };
+    let mut nominal = fit(&stage, plant, EffectSet::default(), segments, effort)?;
     // A window whose start was guessed badly says little of the steps that it needs.
     let discretisation = match pace::touches(&nominal.built) {
         true => guessed,
@@ -428,7 +474,7 @@ fn begin(
         // Guesses and weights were those of another noise.
         let stage = Stage { tapes: &thinned, doubt: noise.doubt, ..stage };
         let segments = cut(&nominal.built, &thinned, Some(window), |t| t.role == Role::Fit);
-        nominal = fit(&stage, plant, EffectSet::default(), segments, Effort::STARTS)?;
+        nominal = fit(&stage, plant, EffectSet::default(), segments, effort)?;
     }
     Ok(Begun { tapes, thinned, doubt: noise.doubt, window, discretisation, nominal, said })
 }

@@ -4,6 +4,7 @@
 //! is free: turn of each base (rotation vector, W axes), place of its origin, spin, speed; joint coordinates; joint rates; memory of effects.
 //! A turned base keeps its spin in its own axes: what a gyro reads does not hang on an attitude that nothing reads.
 
+use crate::held::Held;
 use crate::plant::Built;
 use friction::Friction;
 use sim::World;
@@ -37,6 +38,8 @@ pub struct Start {
     pub bristles: Vec<Vec3>,
     /// How long each base has been still, s: what sticks grows stronger with that.
     pub still: Vec<f64>,
+    /// What contacts, mechanisms and dry joints remember, where a replay was there before; as the scenario begins where none was.
+    pub held: Option<Arc<Held>>,
 }
 
 /// One free coordinate of a start.
@@ -103,6 +106,7 @@ impl Start {
             memory: vec![0.0; count_memory(built)],
             bristles: Vec::new(),
             still: vec![0.0; state.bases.len()],
+            held: None,
         }
     }
 
@@ -118,11 +122,12 @@ impl Start {
             memory: vec![0.0; count_memory(built)],
             bristles: Vec::new(),
             still: vec![0.0; state.bases.len()],
+            held: Held::of(built, state),
         };
         if start.memory.is_empty() && state.bristles.is_empty() {
             return start;
         }
-        let mut fresh = start.world(built, run);
+        let mut fresh = Self { held: None, ..start.clone() }.world(built, run);
         fresh.commands_mut().copy_from_slice(&state.commands);
         fresh.settle_effects();
         start.memory = world.effect_memory().iter().zip(fresh.effect_memory()).map(|(now, rest)| now - rest).collect();
@@ -165,6 +170,7 @@ impl Start {
         take(&mut self.memory, &before.memory, count_memory(known));
         take(&mut self.q, &before.q, known.start.q.len());
         take(&mut self.v, &before.v, known.start.v.len());
+        self.held.clone_from(&before.held);
     }
 
     /// A world at this start.
@@ -174,6 +180,9 @@ impl Start {
         state.bases.clone_from(&self.bases);
         state.q.clone_from(&self.q);
         state.v.clone_from(&self.v);
+        if let Some(held) = &self.held {
+            held.set(&mut state);
+        }
         let mut world = World::new(Arc::clone(built.model_of(run)), state).without_books();
         world.set_base_twists(&self.twists);
         if !self.bristles.is_empty() {

@@ -83,6 +83,11 @@ impl<'a> Work<'a> {
         Self { limit: self.limit, ..Self::new(self.watch, 0.0) }
     }
 
+    /// The same with so many times as much.
+    pub(crate) fn anew_times(&self, times: f64) -> Self {
+        Self { limit: (self.limit as f64 * times) as u64, ..self.anew() }
+    }
+
     /// What was done so far.
     pub fn total(&self) -> Total {
         Total {

@@ -1,6 +1,7 @@
 //! Whether derivatives that are known are still those of an interval.
 
-use super::track::{Frame, Interval, Link, Track, may_follow, told};
+use super::track::{Frame, Interval, Link, Track, told};
+use crate::held::holds;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -37,7 +38,7 @@ impl Frame<'_> {
         let (r, end) = self.glance(self.built, run, interval, &interval.start)?;
         let start = interval.start.retract(self.freedoms, state.as_slice());
         let (q, e) = self.glance(self.built, run, &moved, &start)?;
-        let read = told(may_follow(self.built), interval, q - r);
+        let read = told(!holds(self.built), interval, q - r);
         let ends = &link.s * DVector::from_vec(e.difference(&end, self.freedoms));
         let (read_by, ends_by) = (&link.s * &state + &link.f * &force, &link.s * (&link.a * &state + &link.b * &force));
         let far = (&read - &read_by).norm_squared() + (&ends - &ends_by).norm_squared();

@@ -6,7 +6,8 @@
 //! How large k may be is tried on the rig itself. Dry friction has corners, of which both ends of a difference quotient make the same.
 
 use super::forces::Force;
-use super::track::{Frame, Track, coordinates, may_follow};
+use super::track::{Frame, Track, coordinates};
+use crate::held::holds;
 use crate::linear::Stage;
 use crate::plant::Plant;
 use crate::replay::SAME;
@@ -59,7 +60,7 @@ pub fn of_rig(
     let at = |longest| -> Vec<Coarse> { stage.tapes.iter().map(|t| Coarse::new(t, own, longest)).collect() };
     let fine = at(None);
     let tried = || {
-        let built = plant.build(&[]).ok().filter(may_follow)?;
+        let built = plant.build(&[]).ok().filter(|b| !holds(b))?;
         let cut = |(k, run): (usize, &usize)| {
             let track = Track::cut((stage, &fine), (&built, forces.len()), *run, knots).ok()?;
             Some((*run, track.intervals[(k + 1) * knots / (TRIED + 1)].clone()))

@@ -13,6 +13,7 @@ use super::track::{Base, Bases, Column, Frame, Interval, Link, Side, Source, Tra
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
+use crate::held::holds;
 use crate::linear::{Stage, Variation};
 use crate::plant::{Built, Plant};
 use crate::start::Freedom;
@@ -112,6 +113,8 @@ const NEARER: f64 = 0.5;
 const STEPS: [usize; 2] = [12, 6];
 /// Iterations of states and spread of a model without numbers.
 pub(super) const SETTLING: usize = 3;
+/// Iterations until the states of a model that holds have settled.
+const CONVERGING: usize = 12;
 /// Iterations until states follow each other, and what they may miss each other by, units of noise: a free run makes much of it.
 const JOININGS: usize = 3;
 const JOINED: f64 = 1e-2;
@@ -186,7 +189,16 @@ impl<'a> Problem<'a> {
 
     /// The nominal model along all runs.
     pub fn begin(&self) -> Result<Fitted, DiagnoseError> {
-        self.shorter(|knots| self.refined(self.begun_in(knots)?, true))
+        self.begin_with(&EffectSet::default())
+    }
+
+    /// A set along all runs, its numbers as they are.
+    pub fn begin_with(&self, set: &EffectSet) -> Result<Fitted, DiagnoseError> {
+        self.shorter(|knots| {
+            let begun = self.refined(self.begun_in(knots, set)?, true)?;
+            // What is fitted later goes on from here: what it gains must be its own.
+            if holds(&begun.built) { self.settle(begun, CONVERGING, true) } else { Ok(begun) }
+        })
     }
 
     /// What can be done with so many intervals of each run; with shorter ones where a replay leaves the range of numbers before its samples correct it.
@@ -199,9 +211,9 @@ impl<'a> Problem<'a> {
     }
 
     /// The same with so many intervals of each run.
-    fn begun_in(&self, knots: usize) -> Result<Fitted, DiagnoseError> {
-        let set = EffectSet::default();
-        let built = self.plant.build(&[])?;
+    fn begun_in(&self, knots: usize, set: &EffectSet) -> Result<Fitted, DiagnoseError> {
+        let set = set.clone();
+        let built = self.plant.build(&set.effects())?;
         let length = |run: usize| self.stage.tapes[run].span.1 - self.stage.tapes[run].span.0;
         let shortest = self.runs.iter().map(|r| length(*r)).fold(f64::INFINITY, f64::min);
         // Of runs of unlike length the longer ones have more intervals, not longer ones: how far a model is followed from a state is a time.
@@ -235,7 +247,13 @@ impl<'a> Problem<'a> {
             converged: false,
         };
         self.follow(&mut none)?;
-        self.settle(none, SETTLING, false)
+        let begun = none.spread.force.clone();
+        let settled = self.settle(none, SETTLING, false)?;
+        if !holds(&settled.built) {
+            return Ok(settled);
+        }
+        let settled = self.with_forces_again(settled, &begun);
+        self.followed_again(settled)
     }
 
     /// The same fit on other samples of the same runs.
@@ -249,7 +267,7 @@ impl<'a> Problem<'a> {
     /// Two sets along other runs than those that they were fitted to, their numbers as they are.
     pub fn along(&self, [one, other]: [&Fitted; 2]) -> Result<[Fitted; 2], DiagnoseError> {
         self.shorter(|knots| {
-            let begun = self.begun_in(knots)?;
+            let begun = self.begun_in(knots, &EffectSet::default())?;
             let along = |of: &Fitted| {
                 let mut now = self.with(&begun, of.set.frozen())?;
                 now.spread = Spread { local: Vec::new(), ..of.spread.clone() };
@@ -281,7 +299,13 @@ impl<'a> Problem<'a> {
     /// States and spread of a model as it stands.
     pub(super) fn settle(&self, mut now: Fitted, times: usize, reuse: bool) -> Result<Fitted, DiagnoseError> {
         for time in 0..times {
-            let made = self.linearise(&mut now, &[], reuse || time > 0)?;
+            // Through touches derivatives are another's at every look; states that have settled once are near.
+            let made = if time > 0 && holds(&now.built) {
+                let exact = self.read(&mut now)?;
+                self.with_columns(&mut now, &exact, &[])?
+            } else {
+                self.linearise(&mut now, &[], reuse || time > 0)?
+            };
             let steps = if time == 0 { STEPS[0] } else { STEPS[1] };
             let chains = made.chains(&[]);
             let found = estimate(&chains, None, &now.spread.without_local_noise(), steps);
@@ -316,8 +340,14 @@ impl<'a> Problem<'a> {
         now
     }
 
-    /// A set fitted, from where another one stands.
+    /// A set fitted, from where another one stands; where something holds the runs are followed anew as long as that betters it.
     pub fn fit(&self, from: &Fitted, set: EffectSet, reach: Reach) -> Result<Fitted, DiagnoseError> {
+        let once = self.fit_once(from, set, reach)?;
+        self.fitted_again(once, reach)
+    }
+
+    /// The same once, from the states of another fit.
+    pub(super) fn fit_once(&self, from: &Fitted, set: EffectSet, reach: Reach) -> Result<Fitted, DiagnoseError> {
         let mut now = self.with(from, self.possible(from, set)?)?;
         // To the end a fit begins by following the runs anew: what memory an effect has in them may have been found beside other numbers.
         if !reach.reuse || now.set.titles() != from.set.titles() {
@@ -455,9 +485,8 @@ impl<'a> Problem<'a> {
 
     /// What a fit reads where it stands, its derivatives by states and forces taken anew where these are not to be reused.
     fn exact(&self, now: &mut Fitted, reuse: bool) -> Result<Exact, DiagnoseError> {
+        let exact = self.read(now)?;
         let frame = self.frame(now);
-        let exact: Option<Exact> = now.tracks.par_iter().map(|t| frame.exact(t)).collect();
-        let exact = exact.ok_or_else(|| self.lost())?;
         let is_known = reuse && now.links.len() == now.tracks.len();
         if is_known && now.built.model.is_smooth() {
             return Ok(exact);
@@ -469,6 +498,14 @@ impl<'a> Problem<'a> {
         let links: Option<Vec<Arc<Vec<Link>>>> = now.tracks.par_iter().enumerate().map(links).collect();
         now.links = links.ok_or_else(|| self.lost())?;
         Ok(exact)
+    }
+
+    /// What a fit reads where it stands, with what holds handed on.
+    fn read(&self, now: &mut Fitted) -> Result<Exact, DiagnoseError> {
+        let mut tracks = std::mem::take(&mut now.tracks);
+        let exact: Option<Exact> = tracks.par_iter_mut().map(|t| self.frame(now).hand_on(t)).collect();
+        now.tracks = tracks;
+        exact.ok_or_else(|| self.lost())
     }
 
     /// The same with a column for each variation.

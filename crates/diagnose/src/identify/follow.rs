@@ -1,9 +1,10 @@
 //! Runs followed by another model than that which their states are of.
 
-use super::fit::{Fitted, Made, Problem};
+use super::fit::{Fitted, Made, Problem, Reach, SETTLING};
 use super::marginal::score;
 use super::track::{Link, Told, Track};
 use crate::error::DiagnoseError;
+use crate::held::holds;
 use nalgebra::DVector;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -12,6 +13,11 @@ use std::sync::Arc;
 const ASTRAY: f64 = 0.1;
 const THERE: f64 = 1e-3;
 
+/// Share of what a force was begun with below which it was held for none.
+const NONE: f64 = 1e-2;
+/// Times that a model that holds is followed anew, and fall of −2 log likelihood by residual that is worth another time.
+const FOLLOWED: usize = 4;
+const FALLEN: f64 = 3e-3;
 impl Problem<'_> {
     /// The runs of another fit followed by a model: with the derivatives that are known, and with its own where those lead astray.
     pub(super) fn followed(&self, from: &Fitted, with: Fitted) -> Result<Fitted, DiagnoseError> {
@@ -63,5 +69,54 @@ impl Problem<'_> {
         now.links = links.ok_or_else(|| self.lost())?;
         now.tracks = tracks;
         Ok(())
+    }
+
+    /// A fit whose runs are followed anew, and its numbers from there, as long as that betters it; as it is where all intervals are followed.
+    pub(super) fn fitted_again(&self, mut now: Fitted, reach: Reach) -> Result<Fitted, DiagnoseError> {
+        for _ in 0..FOLLOWED {
+            let again = self.followed_again(now.clone())?;
+            let fall = now.score - again.score;
+            if fall.is_nan() || fall < FALLEN * now.count as f64 {
+                break;
+            }
+            let next = self.fit_once(&again, again.set.clone(), Reach { reuse: true, ..reach })?;
+            now = if next.score < again.score { next } else { again };
+        }
+        Ok(now)
+    }
+
+    /// A fit with forces that seemed idle while its states were astray tried again at what they were begun with, where that is better.
+    pub(super) fn with_forces_again(&self, settled: Fitted, begun: &DVector<f64>) -> Fitted {
+        let revived = settled.spread.force.zip_map(begun, |now, begun| if now < NONE * begun { begun } else { now });
+        if revived == settled.spread.force {
+            return settled;
+        }
+        let mut again = settled.clone();
+        again.spread.force = revived;
+        let again = self.settle(again, SETTLING, true).ok();
+        again.filter(|again| again.score < settled.score).unwrap_or(settled)
+    }
+
+    /// Runs of a model that holds followed anew, as long as that betters them: states that were led astray through a touch are found again by what comes before
+    /// them, not by steps along derivatives that were taken astray.
+    pub(super) fn followed_again(&self, mut now: Fitted) -> Result<Fitted, DiagnoseError> {
+        for _ in 0..FOLLOWED {
+            if !holds(&now.built) || !now.spread.is_led_astray() {
+                break;
+            }
+            let mut next = Fitted { links: Vec::new(), ..now.clone() };
+            next.spread.local.clear();
+            self.follow(&mut next)?;
+            let next = self.settle(next, SETTLING, true)?;
+            let fall = now.score - next.score;
+            if fall.is_nan() || fall <= 0.0 {
+                break;
+            }
+            now = next;
+            if fall < FALLEN * now.count as f64 {
+                break;
+            }
+        }
+        Ok(now)
     }
 }

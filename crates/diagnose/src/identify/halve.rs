@@ -3,6 +3,7 @@
 use super::fit::{Fitted, Problem, SETTLING};
 use super::track::{Base, Link, Track};
 use crate::error::DiagnoseError;
+use crate::held::holds;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -33,8 +34,15 @@ impl Problem<'_> {
                 pairs.map(|((before, links), after)| frame.links_again((before, links), after).map(Arc::new)).collect()
             };
             let links: Option<Vec<Arc<Vec<Link>>>> = reuse.then(again).flatten();
+            let before = holds(&now.built).then(|| now.clone());
             now.spread.local.clear();
             now = self.settle(Fitted { tracks, links: links.unwrap_or_default(), ..now }, SETTLING, reuse)?;
+            now = self.followed_again(now)?;
+            // What a touch lacks is no force that shorter intervals follow.
+            if let Some(before) = before.filter(|before| now.score.is_nan() || now.score >= before.score) {
+                now = before;
+                break;
+            }
         }
         if reuse && now.intervals() > begun {
             now.links.clear();

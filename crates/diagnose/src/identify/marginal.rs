@@ -379,6 +379,11 @@ impl Spread {
         [(0..intervals).map(noise).collect(), (0..intervals).map(force).collect()]
     }
 
+    /// Whether there are intervals that are not followed.
+    pub fn is_led_astray(&self) -> bool {
+        self.local.iter().flatten().any(|l| l.noise.amax() > 1.0)
+    }
+
     /// The same without factors of the noise of single intervals.
     pub fn without_local_noise(&self) -> Self {
         self.with_local_noise(0.0)

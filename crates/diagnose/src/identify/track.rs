@@ -5,6 +5,7 @@ use super::coarse::{Coarse, Few};
 use super::forces::{Force, has_memory, pushing};
 use crate::error::DiagnoseError;
 use crate::guess::guess;
+use crate::held::holds;
 use crate::linear::{Stage, Variation};
 use crate::plant::Built;
 use crate::replay::{Leg, Pace, Shot, Span, members_between, shoot};
@@ -92,11 +93,6 @@ pub fn coordinates(built: &Built, start: &Start) -> Vec<Freedom> {
     freedoms(built, start).into_iter().filter(|f| !matches!(f, Freedom::Bristle(..))).collect()
 }
 
-/// Whether a model may be followed from interval to interval: contacts and mechanisms remember what a state does not hold.
-pub fn may_follow(built: &Built) -> bool {
-    built.model.scene.pairs().is_empty() && built.model.mechanisms.is_empty()
-}
-
 impl Interval {
     /// Its begin up to an instant, of which nothing is read.
     fn until(&self, to: f64) -> Self {
@@ -154,18 +150,18 @@ impl Track {
 
 impl Frame<'_> {
     /// A state moved along its coordinates, as far as the model can be there.
-    fn retract(&self, state: &Start, by: &[f64]) -> Start {
+    pub(super) fn retract(&self, state: &Start, by: &[f64]) -> Start {
         state.retract_within(self.built, self.freedoms, by)
     }
 
-    fn shoot(&self, built: &Built, run: usize, interval: &Interval, start: &Start) -> Option<Base> {
+    pub(super) fn shoot(&self, built: &Built, run: usize, interval: &Interval, start: &Start) -> Option<Base> {
         let told = (interval.members.as_slice(), &self.stage.tapes[run]);
         self.shoot_at(self.stage.pace, built, (run, interval), start, told)
     }
 
     /// The same as derivatives are taken: models in which nothing touches at a coarser clock and few events, those without corners by the midpoint rule.
     pub(super) fn glance(&self, built: &Built, run: usize, interval: &Interval, start: &Start) -> Option<Base> {
-        if !may_follow(built) {
+        if holds(built) {
             return self.shoot(built, run, interval, start);
         }
         let Coarse { heard, longest, .. } = &self.coarse[run];
@@ -186,7 +182,8 @@ impl Frame<'_> {
         let found = shoot(built, tape, start, Leg { span: interval.span, members, push, heard }, pace);
         let work = found.as_ref().map_or_else(|_| sim::Work::default(), |s| s.work);
         self.stage.work.add(interval.span.to - interval.span.from, built.model.owners.len(), &work);
-        let Shot { residuals, end, .. } = found.ok()?;
+        let Shot { residuals, mut end, .. } = found.ok()?;
+        end.bristles.clear();
         residuals.iter().all(|r| r.is_finite()).then(|| (DVector::from_vec(residuals), end))
     }
 
@@ -198,7 +195,7 @@ impl Frame<'_> {
         let column = |moved: Option<Base>, step: f64| {
             let few = moved.as_ref().map_or_else(|| DVector::zeros(r.len()), |(q, _)| (q - r) / step);
             let by_end = |(_, e): &Base| DVector::from_vec(e.difference(end, self.freedoms)) / step;
-            (told(may_follow(self.built), interval, few), moved.as_ref().map_or_else(|| DVector::zeros(n_x), by_end))
+            (told(!holds(self.built), interval, few), moved.as_ref().map_or_else(|| DVector::zeros(n_x), by_end))
         };
         let by_state = |freedom: &Freedom| {
             let step = freedom.first_step();
@@ -259,7 +256,7 @@ impl Frame<'_> {
 
     /// Whether both ends of a difference quotient are replayed alike at the coarser clock: else both are as they are judged.
     fn is_coarse_with(&self, variation: &Variation) -> bool {
-        let [here, there] = [self.built, &variation.built].map(|b| may_follow(b).then(|| b.model.is_smooth()));
+        let [here, there] = [self.built, &variation.built].map(|b| (!holds(b)).then(|| b.model.is_smooth()));
         here.is_some() && here == there
     }
 
@@ -272,7 +269,7 @@ impl Frame<'_> {
 
     /// The same one after the other, carried from interval to interval as far as the number brings memory of its own.
     fn put_columns(&self, track: &Track, bases: &Bases<'_>, variation: &Variation, mut put: impl FnMut(Column)) {
-        let brings = has_memory(&variation.built, self.built);
+        let brings = holds(self.built) || has_memory(&variation.built, self.built);
         let mut carried: Option<Start> = None;
         let is_coarse = self.is_coarse_with(variation);
         let bases = if is_coarse { &bases.coarse } else { bases.exact };
@@ -374,9 +371,14 @@ impl Frame<'_> {
             let taken = link.as_ref()?;
             let off = DVector::from_vec(expected.difference(&interval.start, self.freedoms));
             let update = chain::update(&alone(taken, (&r, &off, &interval.force), factors), root, force);
-            let (state, force) = (update.state + off, &update.force - &interval.force);
+            let (mut state, mut force) = (update.state + off, &update.force - &interval.force);
+            if holds(self.built) {
+                let share = self.share_that_helps((run, interval), (&r, factors), (&state, &force));
+                state *= share;
+                force *= share;
+            }
             interval.start = self.retract(&interval.start, state.as_slice());
-            interval.force = update.force;
+            interval.force += &force;
             if pass == if is_first { FIRST } else { PASSES } {
                 let end = self.retract(&end, (&taken.a * state + &taken.b * force).as_slice());
                 return link.map(|link| Passed { link, end, root: update.root });

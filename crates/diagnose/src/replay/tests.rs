@@ -9,7 +9,7 @@ use spatial::Twist;
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/rigs/dock-impact.toml");
 
 /// Two channels of a chaser that meets its target after 0.3 s.
-fn docking() -> (Built, Tape, Start) {
+pub(crate) fn docking() -> (Built, Tape, Start) {
     let mut plant = Plant::new(scenario::load(FILE.as_ref(), &[]).expect("the scenario is in the repository"));
     plant.channels = vec!["body.chaser.position".to_owned(), "sensor.probe.force".to_owned()];
     let built = plant.build(&[]).expect("it builds");

@@ -14,6 +14,7 @@ use super::sets::{Ground, Grown};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{EffectSet, first_sizes, vary};
+use crate::held::holds;
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach, ridge_of};
 use crate::identify::marginal::{Chain, Spread, estimate, score};
@@ -90,20 +91,25 @@ pub fn criterion(fit: &Fitted, many: usize) -> f64 {
     fit.score + fit.set.members.iter().map(|(h, _)| price(h, fit.count, many)).sum::<f64>()
 }
 
-/// Searches for what a nominal model leaves out; `hypotheses` of a model, and the nominal numbers that may stand for what is left.
+/// Searches for what a nominal model leaves out, from that or from a set that is `begun` with; `hypotheses` of a model, and the nominal numbers that may stand
+/// for what is left.
 pub fn search(
     problem: &Problem<'_>,
-    nominal: Fitted,
+    (nominal, begun): (Fitted, Option<Fitted>),
     hypotheses: &Hypotheses<'_>,
     numbers: Option<EffectSet>,
 ) -> Result<Found, DiagnoseError> {
     let first = hypotheses(&nominal)?;
-    let (many, all) = (first.len(), problem.power(&nominal));
+    // What a nominal model leaves that is far from what the runs did is no measure of what is left beside another one.
+    let (many, all) = (first.len(), problem.power(begun.as_ref().unwrap_or(&nominal)));
     let found = Found { nominal: nominal.clone(), best: nominal, tried: Vec::new(), shown: Vec::new(), left: 0.0 };
     let (known, refused) = (first.clone(), Vec::new());
     let ways = Vec::new();
     let mut search = Search { problem, hypotheses, many, all, numbers, known, refused, ways, smaller: None, found };
-    let mut now = search.forward(search.found.nominal.clone(), 0, None)?;
+    let mut now = match begun {
+        Some(begun) => search.forward(begun, 1, None)?,
+        None => search.forward(search.found.nominal.clone(), 0, None)?,
+    };
     // Where the first step was one of several effects at once that lead nowhere, one with fewer of them may be the way.
     if let Some(smaller) = search.smaller.take().filter(|_| !problem.stage.work.is_spent(Until::Search))
         && !remainder(problem, &now)?.is_noise()
@@ -341,7 +347,8 @@ fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>, bare: &[Chain
     let is_dull = |place: &str| {
         let own = problem.forces.iter().zip(&rises).filter(|(f, _)| f.place == place);
         let rise = own.map(|(_, rise)| *rise).reduce(f64::max);
-        place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
+        // What holds passes a joint's force on to where it is held.
+        !holds(&now.built) && place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
     };
     all.into_iter().filter(|h| !is_dull(&h.place)).filter_map(|h| now.set.still_open(h)).collect()
 }
