@@ -11,8 +11,7 @@
 use crate::along::{self, Course};
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
-use crate::fit::EffectSet;
-use crate::fit::Effort;
+use crate::fit::{EffectSet, Effort};
 use crate::identify::fit::{Fitted, Problem};
 use crate::identify::track::Track;
 use crate::limits::{MARGIN, RAISED, SAMPLES};

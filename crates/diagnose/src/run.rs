@@ -184,6 +184,7 @@ impl Way {
     }
 }
 
+/// Cleans and matches a recording, and begins with it.
 fn prepare<'w>(
     scenario: Scenario,
     set: &RecordingSet,

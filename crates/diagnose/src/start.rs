@@ -122,12 +122,13 @@ impl Start {
             memory: vec![0.0; count_memory(built)],
             bristles: Vec::new(),
             still: vec![0.0; state.bases.len()],
-            held: Held::of(built, state),
+            held: None,
         };
+        let held = Held::of(built, state);
         if start.memory.is_empty() && state.bristles.is_empty() {
-            return start;
+            return Self { held, ..start };
         }
-        let mut fresh = Self { held: None, ..start.clone() }.world(built, run);
+        let mut fresh = start.world(built, run);
         fresh.commands_mut().copy_from_slice(&state.commands);
         fresh.settle_effects();
         start.memory = world.effect_memory().iter().zip(fresh.effect_memory()).map(|(now, rest)| now - rest).collect();
@@ -146,6 +147,7 @@ impl Start {
             }
         }
         start.bristles = found.into_inner();
+        start.held = held;
         start
     }
 
