@@ -134,6 +134,17 @@ impl EffectSet {
         set
     }
 
+    /// The set with a law in the place of one of its members; where that law is in it already it goes to where it would begin.
+    pub fn instead(&self, member: usize, plain: &Hypothesis, x: &[f64]) -> Self {
+        let mut set = self.without(member);
+        let is_same = |(h, _): &(Hypothesis, Vec<f64>)| !h.is_tolerated() && h.title() == plain.title();
+        let Some((own, at)) = set.members.iter_mut().find(|m| is_same(m)) else { return set.with(plain, x) };
+        if x.len() == at.len() {
+            *at = own.clamped(x);
+        }
+        set
+    }
+
     /// The set with all free that its members hold in reserve, where it leads astray, from each end of that; none where they hold nothing.
     pub fn released(&self) -> Vec<Self> {
         if self.members.iter().all(|(h, _)| h.reserve.is_empty()) {
@@ -585,5 +596,21 @@ mod tests {
         let [smooth, stiff] = [0, 1].map(|way| &free[way].members[1].1);
         assert!(0.0 < near[2] && near[2] < smooth[2] && stiff[2] < smooth[2], "smoothest where it creeps fastest");
         assert!(stiff[1] < smooth[1], "stiffest where it yields least");
+    }
+
+    #[test]
+    fn a_law_takes_another_ones_place_once_even_where_it_was_there_before() {
+        let all = hypotheses(&Facts::of_joints(1));
+        let of = |name: &str| all.iter().find(|h| h.name == name).expect("it is in the library");
+        let (plain, rich, beside) =
+            (of("joint-coulomb-friction"), of("joint-stribeck-friction"), of("joint-viscous-friction"));
+        let at = |h: &Hypothesis, first: f64| [&[first], &h.neutral()[1..]].concat();
+        let two = EffectSet::default().with(rich, &at(rich, 0.9)).with(beside, &beside.neutral());
+        let alone = two.instead(0, plain, &at(plain, 0.7));
+        assert_eq!(alone.titles(), [beside.title(), plain.title()]);
+        let three = EffectSet::default().with(plain, &at(plain, 0.2)).with(rich, &at(rich, 0.9));
+        let one = three.instead(1, plain, &at(plain, 0.7));
+        assert_eq!(one.titles(), [plain.title()]);
+        assert_eq!(one.members[0].1[0], 0.7, "it begins where the richer law stood");
     }
 }

@@ -8,7 +8,7 @@ use crate::fit::{EffectSet, Effort, Fit, fit};
 use crate::hypothesis::{Alternative, Hypothesis};
 use crate::linear::Stage;
 use crate::plant::Plant;
-use crate::search::{LOOK, TIE, WHOLE, errors};
+use crate::search::{END, LOOK, TIE, WHOLE, errors};
 use crate::select::search::takes_little;
 use crate::standing::{Standing, criterion};
 use crate::work::Until;
@@ -78,12 +78,8 @@ pub(crate) fn prune(stage: &Stage<'_>, plant: &Plant, now: Standing) -> Result<S
     Ok(now)
 }
 
-/// Hypotheses and coordinates of what a member of a set becomes where some of its numbers do nothing, as far as they are known and not in the set.
-pub(crate) fn plainer(
-    (h, x): &(Hypothesis, Vec<f64>),
-    set: &EffectSet,
-    known: &[Hypothesis],
-) -> Vec<(Hypothesis, Vec<f64>)> {
+/// Hypotheses and coordinates of what a member of a set becomes where some of its numbers do nothing, as far as they are known.
+pub(crate) fn plainer((h, x): &(Hypothesis, Vec<f64>), known: &[Hypothesis]) -> Vec<(Hypothesis, Vec<f64>)> {
     let others = if h.is_tolerated() { Vec::new() } else { h.plainer(x) };
     let of = |other: Alternative| {
         let is_here = |p: &&Hypothesis| p.name == other.name && (p.place == h.place || other.is_at_contact);
@@ -94,40 +90,67 @@ pub(crate) fn plainer(
         let held = [&plain.held[..], &other.held[..]].concat();
         Some((Hypothesis { held, ..plain }, other.coordinates))
     };
-    others.into_iter().filter_map(of).filter(|(plain, _)| !set.has_finding(plain)).collect()
+    others.into_iter().filter_map(of).collect()
 }
 
-/// Puts a plainer law in the place of one that has grown into it, and a likelier one in that of its equal.
+/// What has gone from a set, and what stands in its place.
+pub(crate) struct Replaced {
+    pub gone: String,
+    pub by: Hypothesis,
+    /// Whether that was in the set before.
+    pub was_there: bool,
+}
+
+/// Puts a plainer law in the place of one that has grown into it, and a likelier one in that of its equal; what was replaced.
 pub(crate) fn simplify(
     stage: &Stage<'_>,
     plant: &Plant,
     mut now: Standing,
     (all, brought): (&[Hypothesis], f64),
-) -> Result<Standing, DiagnoseError> {
-    for member in 0..now.judge().set.members.len() {
-        for (plain, x) in plainer(&now.judge().set.members[member], &now.judge().set, all) {
-            let set = now.judge().set.without(member).with(&plain, &x);
-            let is_far = |near: &Fit| near.rms() > PLAINER * now.judge().rms();
-            let of = |set: &EffectSet, effort| fit(stage, plant, set.clone(), now.judge().segments.clone(), effort);
-            let near = of(&set, GLANCE)?;
-            let released = is_far(&near).then(|| set.released()).and_then(|ends| ends.into_iter().next());
-            // What a plainer law cannot do without it may do with what it holds in reserve.
-            let near = released.map_or(Ok(near), |free| of(&free, LOOK))?;
-            if is_far(&near) {
-                continue;
-            }
-            let tried = now.refit(stage, plant, near.set, LOOK)?;
-            let costs = criterion(tried.judge()) - criterion(now.judge());
-            stage.work.watch.step(&format!("{} instead costs {costs:.1}", plain.title()));
-            let is_as_good = costs < (AS_GOOD * now.judge().noise).min(TIE * brought) || is_idle(&now, &tried, brought);
-            if is_as_good && tried.is_comparable(&now) || !now.is_better(&tried) {
-                stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
-                now = tried;
-                break;
-            }
+) -> Result<(Standing, Vec<Replaced>), DiagnoseError> {
+    let mut replaced = Vec::new();
+    for grown in now.judge().set.titles() {
+        let member = |now: &Standing| now.judge().set.titles().iter().position(|title| *title == grown);
+        let Some(at) = member(&now) else { continue };
+        for (plain, x) in plainer(&now.judge().set.members[at], all) {
+            let Some(tried) = tried_instead(stage, plant, &now, (at, (&plain, &x), brought))? else { continue };
+            stage.work.watch.step(&format!("{} is enough: {}", plain.title(), errors(&tried)));
+            let was_there = now.judge().set.has_finding(&plain);
+            replaced.push(Replaced { gone: grown.clone(), by: plain, was_there });
+            now = tried;
+            break;
         }
     }
-    Ok(now)
+    Ok((now, replaced))
+}
+
+/// A standing with another law in the place of a member, where that is as good; `brought`: what the last round's effects have taken from the cost.
+fn tried_instead(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    now: &Standing,
+    (member, (plain, x), brought): (usize, (&Hypothesis, &[f64]), f64),
+) -> Result<Option<Standing>, DiagnoseError> {
+    let set = now.judge().set.instead(member, plain, x);
+    let is_far = |near: &Fit| near.rms() > PLAINER * now.judge().rms();
+    let of = |set: &EffectSet, effort| fit(stage, plant, set.clone(), now.judge().segments.clone(), effort);
+    let near = of(&set, GLANCE)?;
+    let released = is_far(&near).then(|| set.released()).and_then(|ends| ends.into_iter().next());
+    // What a plainer law cannot do without it may do with what it holds in reserve.
+    let near = released.map_or(Ok(near), |free| of(&free, LOOK))?;
+    if is_far(&near) {
+        return Ok(None);
+    }
+    let mut tried = now.refit(stage, plant, near.set, LOOK)?;
+    let costs = |tried: &Standing| criterion(tried.judge()) - criterion(now.judge());
+    // What comes so near by a look is fitted as far as what it would replace.
+    if (0.0..TIE * brought).contains(&costs(&tried)) && tried.is_comparable(now) && !tried.judge().converged {
+        let set = tried.judge().set.clone();
+        tried = tried.refit(stage, plant, set, END)?;
+    }
+    stage.work.watch.step(&format!("{} instead costs {:.1}", plain.title(), costs(&tried)));
+    let is_as_good = costs(&tried) < (AS_GOOD * now.judge().noise).min(TIE * brought) || is_idle(now, &tried, brought);
+    Ok((is_as_good && tried.is_comparable(now) || !now.is_better(&tried)).then_some(tried))
 }
 
 /// Whether a law does little more than its plainer kind, where both leave what is no noise: what a model leaves that is not in the library is none, and a

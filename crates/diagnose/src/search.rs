@@ -14,7 +14,7 @@ use crate::hypothesis::Hypothesis;
 use crate::linear::{Segment, Stage};
 use crate::lost;
 use crate::pace;
-use crate::parsimony::{prune, simplify};
+use crate::parsimony::{Replaced, prune, simplify};
 use crate::plant::{Built, Plant};
 use crate::refits::{Refit, Refits, scores_of_interest};
 use crate::replay::Pace;
@@ -39,7 +39,7 @@ pub(crate) const LOOK: Effort = Effort { share: 2e-3, floor: 0.05, ..Effort::NUM
 /// Until it has converged as far as the next round needs it; all samples fit the last set to the end.
 pub(crate) const WHOLE: Effort = Effort { iterations: 10, floor: 0.02, ..Effort::NUMBERS };
 /// As far as it goes, where more physics would be looked for in what is left.
-const END: Effort = Effort { iterations: 12, floor: 0.02, damping: UNDAMPED, ..Effort::STARTS };
+pub(crate) const END: Effort = Effort { iterations: 12, floor: 0.02, damping: UNDAMPED, ..Effort::STARTS };
 
 /// Difference by halved steps, units of noise, beyond which a fit that has not converged goes on in finer ones.
 const ROUGH: f64 = 0.03;
@@ -115,9 +115,9 @@ pub fn search(
         stage.work.watch.step(&format!("kept {added}: {}, {found}", errors(&now)));
         // A law that has grown into a plainer one has numbers that would follow what is still left.
         let brought = if before.is_comparable(&now) { before.judge().cost - now.judge().cost } else { f64::INFINITY };
-        let grown = titles(&now);
-        now = simplify(stage, plant, now.weighted(stage), (&known, brought))?;
-        grown.iter().zip(titles(&now)).for_each(|(grown, plain)| hand_over(&mut attempts, grown, &plain));
+        let replaced;
+        (now, replaced) = simplify(stage, plant, now.weighted(stage), (&known, brought))?;
+        replaced.iter().for_each(|change| hand_over(&mut attempts, change));
         round += 1;
     }
     if attempts.is_empty() {
@@ -174,18 +174,15 @@ fn to_the_end(stage: &mut Stage<'_>, plant: &Plant, now: Standing) -> Result<Sta
     Ok(if tried.is_better(&now) { tried } else { now })
 }
 
-/// Name and place of every member.
-fn titles(standing: &Standing) -> Vec<(String, String)> {
-    standing.judge().set.findings().map(|(h, _)| (h.name.to_owned(), h.place.clone())).collect()
-}
-
 /// What a law has brought belongs to the plainer one that has taken its place.
-fn hand_over(attempts: &mut Vec<Attempt>, grown: &(String, String), plain: &(String, String)) {
-    let is_grown = |a: &&mut Attempt| a.kept && (&a.name, &a.place) == (&grown.0, &grown.1);
-    let Some(old) = attempts.iter_mut().find(is_grown).filter(|_| grown != plain) else { return };
-    let new = Attempt { name: plain.0.clone(), place: plain.1.clone(), ..old.clone() };
+fn hand_over(attempts: &mut Vec<Attempt>, Replaced { gone, by, was_there }: &Replaced) {
+    let Some(old) = attempts.iter_mut().find(|a| a.kept && a.title() == *gone) else { return };
+    let new = Attempt { name: by.name.to_owned(), place: by.place.clone(), ..old.clone() };
     (old.kept, old.gain) = (false, None);
-    attempts.retain(|a| (a.round, &a.name, &a.place) != (new.round, &plain.0, &plain.1));
+    if *was_there {
+        return;
+    }
+    attempts.retain(|a| a.round != new.round || a.title() != new.title());
     attempts.push(new);
 }
 

@@ -98,7 +98,8 @@ pub(super) fn simpler(
         usual.reserve.iter().for_each(|(k, _)| x[*k] = usual.coordinates[*k].neutral);
         (usual.clone(), x)
     });
-    plainer(member, set, known).into_iter().flat_map(begins).chain(own).collect()
+    let others = plainer(member, known).into_iter().filter(|(plain, _)| !set.has_finding(plain));
+    others.flat_map(begins).chain(own).collect()
 }
 
 #[cfg(test)]

@@ -224,11 +224,14 @@ impl Search<'_> {
         if round == 0 {
             self.smaller = smaller;
         }
-        // What takes little of what an accepted set leaves stands for something that is not in the library.
+        // What takes little of what an accepted set leaves stands for something that is not in the library; what leaves noise alone has taken all.
         let left_by = |fit: &Fitted| Left { power: problem.power(fit), spread: fit.spread.clone() };
         let takes_enough = match bounds.is_own {
             true => remainder(problem, &best)?.rise <= (1.0 - NEARLY) * remainder(problem, now)?.rise,
-            false => round == 0 || left_by(&best).takes_its_part_of(&left_by(now), self.all, problem.stage.doubt),
+            false => {
+                let takes = || left_by(&best).takes_its_part_of(&left_by(now), self.all, problem.stage.doubt);
+                round == 0 || takes() || remainder(problem, &best)?.is_noise()
+            }
         };
         Ok(takes_enough.then_some(best))
     }
