@@ -55,8 +55,12 @@ pub(crate) fn seek(
     let usual = || catalogue::within(&Facts::new(&nominal.built, stage.tapes), &USUAL);
     let numbers = plant.scenario.tolerance.is_exact().then(usual);
     let begun = (!known.members.is_empty()).then(|| beginning(&problem, &nominal, known)).transpose()?;
-    let found = search(&problem, (nominal, begun), &hypotheses, numbers)?;
-    let after = remainder(&problem, &found.best)?;
+    let mut found = search(&problem, (nominal, begun), &hypotheses, numbers)?;
+    let heard = problem.clone().heard_by(&found.best.set)?;
+    if let Some(best) = heard.reheard(&problem, &found.best)? {
+        found.best = to_the_end(&heard, best);
+    }
+    let after = remainder(&heard, &found.best)?;
     stage.work.watch.step(&format!("what was found leaves {:.1}, noise at most {:.1}", after.rise, after.bound));
     Ok(Course { found, left: [left, after] })
 }
@@ -95,7 +99,7 @@ pub(crate) fn told_by_all_runs(
     own: &Facts,
     course: Course,
 ) -> Result<Course, DiagnoseError> {
-    let problem = problem(stage, plant, own, Role::Fit);
+    let problem = problem(stage, plant, own, Role::Fit).heard_by(&course.found.best.set)?;
     if course.found.best.tracks.len() == problem.runs.len() {
         return Ok(course);
     }
@@ -137,7 +141,8 @@ pub(crate) fn at_suiting_steps(
     let finer = Stage { pace: found.pace, ..*stage };
     let problem =
         Problem { runs: best.tracks.iter().map(|t| t.run).collect(), ..problem(&finer, plant, own, Role::Fit) };
-    let best = problem.fit(best, best.set.clone(), LAST)?;
+    let problem = problem.heard_by(&best.set)?;
+    let best = problem.fit(&problem.onto(best)?, best.set.clone(), LAST)?;
     let left = [course.left[0], remainder(&problem, &best)?];
     Ok((Course { found: Found { best, ..course.found }, left }, found))
 }
@@ -155,7 +160,7 @@ pub(crate) fn fit_to_all(
         return Ok(course);
     }
     // Where forces are left they are what limits the numbers, not how many samples there are.
-    let problem = problem(all, plant, own, Role::Fit);
+    let problem = problem(all, plant, own, Role::Fit).heard_by(&best.set)?;
     if problem.power(best) > NEXT_TO_NOTHING * problem.power(&course.found.nominal) {
         return Ok(course);
     }
@@ -174,7 +179,7 @@ pub(crate) fn windows(
     (own, window): (&Facts, f64),
     fitted: [&Fitted; 2],
 ) -> Result<[Fit; 2], DiagnoseError> {
-    let left_out = problem(stage, plant, own, Role::Holdout);
+    let left_out = problem(stage, plant, own, Role::Holdout).heard_by(&fitted[1].set)?;
     let joined = |fit: Fitted| if fit.set.members.is_empty() { fit } else { left_out.joined(fit) };
     let mut all = fitted.map(|fit| vec![joined(fit.clone())]);
     if !left_out.runs.is_empty() {

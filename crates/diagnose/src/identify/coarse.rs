@@ -8,8 +8,8 @@
 use super::forces::Force;
 use super::track::{Frame, Track, coordinates};
 use crate::held::holds;
-use crate::linear::Stage;
-use crate::plant::Plant;
+use crate::linear::{Stage, Variation};
+use crate::plant::Built;
 use crate::replay::SAME;
 use crate::tape::{CommandTape, Tape};
 use nalgebra::DVector;
@@ -22,7 +22,7 @@ const FEWEST: usize = 8;
 const DENSE: f64 = 0.5;
 
 /// Steps of derivatives that are tried, in those of predictions; in an interval of so many runs; and share of a derivative that they may move.
-const COARSER: [f64; 3] = [8.0, 4.0, 2.0];
+const COARSER: [f64; 4] = [8.0, 4.0, 2.0, 1.0];
 const TRIED: usize = 3;
 const ALIKE: f64 = 0.02;
 
@@ -33,6 +33,8 @@ pub struct Coarse {
     pub heard: Arc<Tape>,
     /// Longest step, s.
     pub longest: f64,
+    /// Whether it is as it is judged.
+    pub is_exact: bool,
     /// Instants at which anything is read, s.
     instants: Vec<f64>,
     /// Largest k, as a power of two.
@@ -50,31 +52,36 @@ pub struct Few {
     told: Vec<(u16, [u16; 4], [f32; 4])>,
 }
 
-/// All runs at the coarsest clock at which a rig's derivatives are what they are; as they were recorded where parts touch.
-pub fn of_rig(
+/// All runs at the coarsest clock at which a model's derivatives, those by some numbers too, are what they are; as they were recorded where parts touch.
+pub fn of_model(
     stage: &Stage<'_>,
-    (plant, forces): (&Plant, &[Force]),
+    (built, forces): (&Built, &[Force]),
     (runs, knots): (&[usize], usize),
+    variations: &[Variation],
 ) -> Arc<Vec<Coarse>> {
-    let own = stage.pace.step;
-    let at = |longest| -> Vec<Coarse> { stage.tapes.iter().map(|t| Coarse::new(t, own, longest)).collect() };
-    let fine = at(None);
+    let fine = all_at(stage, None);
     let tried = || {
-        let built = plant.build(&[]).ok().filter(|b| !holds(b))?;
         let cut = |(k, run): (usize, &usize)| {
-            let track = Track::cut((stage, &fine), (&built, forces.len()), *run, knots).ok()?;
+            let track = Track::cut((stage, &fine), (built, forces.len()), *run, knots).ok()?;
             Some((*run, track.intervals[(k + 1) * knots / (TRIED + 1)].clone()))
         };
         let some: Vec<_> = runs.iter().take(TRIED).enumerate().filter_map(cut).collect();
-        let freedoms = coordinates(&built, &some.first()?.1.start);
-        let alike = |clock: &Vec<Coarse>| {
-            let frame = |coarse| Frame { stage, coarse, built: &built, freedoms: &freedoms, forces };
-            let (ours, theirs) = (frame(&fine), frame(clock));
-            ours.differs(&theirs, &some) < ALIKE
-        };
-        COARSER.iter().map(|k| at(Some(k * own))).find(alike)
+        let freedoms = coordinates(built, &some.first()?.1.start);
+        let exact = Frame { stage, coarse: &fine, built, freedoms: &freedoms, forces };
+        let alike = |coarse: &Vec<Coarse>| exact.differs(&Frame { coarse, ..exact }, &some, variations) < ALIKE;
+        COARSER.iter().map(|k| all_at(stage, Some(k * stage.pace.step))).find(alike)
     };
-    Arc::new(tried().unwrap_or(fine))
+    let found = if holds(built) { None } else { tried() };
+    Arc::new(found.unwrap_or(fine))
+}
+
+/// All runs as they are judged.
+pub fn as_judged(stage: &Stage<'_>) -> Arc<Vec<Coarse>> {
+    Arc::new(all_at(stage, None))
+}
+
+fn all_at(stage: &Stage<'_>, longest: Option<f64>) -> Vec<Coarse> {
+    stage.tapes.iter().map(|t| Coarse::new(t, stage.pace.step, longest)).collect()
 }
 
 impl Coarse {
@@ -83,14 +90,15 @@ impl Coarse {
         let mut instants: Vec<f64> = tape.events.iter().map(|e| e.time).collect();
         instants.dedup_by(|b, a| *b - *a <= SAME);
         let Some(longest) = longest else {
-            return Self { heard: Arc::new(silent(tape, tape.commands.clone())), longest: own, instants, most: 0 };
+            let heard = Arc::new(silent(tape, tape.commands.clone()));
+            return Self { heard, longest: own, is_exact: true, instants, most: 0 };
         };
         let mut gaps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
         gaps.sort_by(f64::total_cmp);
         let usual = gaps.get(gaps.len() / 2).copied().unwrap_or(longest);
         let most = (longest / usual + SAME).max(1.0).log2().floor() as u32;
         let heard = Arc::new(heard(tape, &cells(&instants, 1 << most, longest)));
-        Self { heard, longest, instants, most }
+        Self { heard, longest, is_exact: false, instants, most }
     }
 
     /// Which events of an interval are kept, as few as it bears.

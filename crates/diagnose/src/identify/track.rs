@@ -161,10 +161,10 @@ impl Frame<'_> {
 
     /// The same as derivatives are taken: models in which nothing touches at a coarser clock and few events, those without corners by the midpoint rule.
     pub(super) fn glance(&self, built: &Built, run: usize, interval: &Interval, start: &Start) -> Option<Base> {
-        if holds(built) {
+        let Coarse { heard, longest, is_exact, .. } = &self.coarse[run];
+        if holds(built) || *is_exact {
             return self.shoot(built, run, interval, start);
         }
-        let Coarse { heard, longest, .. } = &self.coarse[run];
         let pace = Pace { step: *longest, free: self.stage.pace.free.max(*longest), midpoint: true };
         self.shoot_at(pace, built, (run, interval), start, (&interval.few.members, heard))
     }
@@ -213,18 +213,23 @@ impl Frame<'_> {
         Some(Link { s, f, a, b })
     }
 
-    /// Largest share of a derivative of some intervals by which those at a coarser clock differ from these.
-    pub fn differs(&self, coarser: &Self, of: &[(usize, Interval)]) -> f64 {
+    /// Largest share of a derivative, by states, forces and numbers, of some intervals by which those at a coarser clock differ from these.
+    pub fn differs(&self, coarser: &Self, of: &[(usize, Interval)], variations: &[Variation]) -> f64 {
         let differ = |(run, interval): &(usize, Interval)| {
             let read = |frame: &Self| {
                 let few = Arc::new(frame.coarse[*run].few(&self.stage.tapes[*run], &interval.members));
-                frame.link(*run, &Interval { few, ..interval.clone() })
+                let interval = Interval { few, ..interval.clone() };
+                let Link { s, f, a, b } = frame.link(*run, &interval)?;
+                let (rows, states) = (s.nrows(), a.nrows());
+                let track = Track { run: *run, intervals: vec![interval] };
+                let exact = frame.exact(&track)?;
+                let bases = frame.bases(&track, &exact, variations)?;
+                let numbers: Vec<Column> = variations.iter().flat_map(|v| frame.columns(&track, &bases, v)).collect();
+                let (y, d) = matrices(&numbers, rows, states);
+                Some([s, f, a, b, y, d])
             };
-            let Some((a, b)) = read(self).zip(read(coarser)) else { return f64::INFINITY };
-            [(&a.s, &b.s), (&a.f, &b.f), (&a.a, &b.a), (&a.b, &b.b)]
-                .map(share_of_change)
-                .into_iter()
-                .fold(0.0, f64::max)
+            let Some((ours, theirs)) = read(self).zip(read(coarser)) else { return f64::INFINITY };
+            ours.iter().zip(&theirs).map(share_of_change).fold(0.0, f64::max)
         };
         of.par_iter().map(differ).reduce(|| 0.0, f64::max)
     }
