@@ -83,8 +83,10 @@ const WORTH: f64 = 3.0;
 const SEVERAL: usize = 3;
 /// Criterion by which a set is far from what it was.
 pub(super) const FAR: f64 = 1000.0;
-/// Rise of the likelihood without a joint's unknown force, as a share of the largest, below which nothing is missing there.
+/// Rise of the likelihood without a joint's unknown force, as a share of the largest, below which nothing is missing there; and the largest one from which on
+/// forces say anything (half a χ² exceeds it once in a thousand times): what is faster than intervals may have been taken for noise.
 const DULL: f64 = 0.003;
+const SPEAKING: f64 = 9.5;
 
 /// Criterion of a fit.
 pub fn criterion(fit: &Fitted, many: usize) -> f64 {
@@ -351,7 +353,8 @@ fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>, bare: &[Chain
         let own = problem.forces.iter().zip(&rises).filter(|(f, _)| f.place == place);
         let rise = own.map(|(_, rise)| *rise).reduce(f64::max);
         // What holds passes a joint's force on to where it is held.
-        !holds(&now.built) && place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
+        let says = largest > SPEAKING && !holds(&now.built);
+        says && place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
     };
     all.into_iter().filter(|h| !is_dull(&h.place)).filter_map(|h| now.set.still_open(h)).collect()
 }
