@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Recordings of two rigs in contact by MuJoCo, each with something concealed, beside scenarios that know nothing of it.
 
-    contact.py OUT [CASE…]        needs mujoco 4.0 and numpy from PyPI; without CASE all of CASES
+    berth.py OUT [CASE…]        needs mujoco 4.0 and numpy from PyPI; without CASE all of CASES
 
 OUT/<rig>/scenario.toml, OUT/<rig>/<case>/{recording.toml,run-1.csv …}, OUT/keys.json, as record.py writes them.
 
@@ -245,7 +245,7 @@ def write_scenario(folder, name, rig):
     stiffness, damping = effective * rig["k"], effective * rig["b"]
     text += f"\n[[contact]]\nbetween = {between}\n"
     text += f'normal = {{ law = "linear", stiffness_n_per_m = {stiffness:.5g}, damping_n_s_per_m = {damping:.4g} }}\n'
-    text += f'friction = {{ law = "bristle", mu = {rig["mu"]}, stiffness_n_per_m = {20 * stiffness:.5g}, damping_n_s_per_m = {10 * damping:.4g} }}\n'
+    text += f'friction = {{ law = "bristle", mu = {rig["mu"]}, stiffness_n_per_m = {5 * stiffness:.5g}, damping_n_s_per_m = {damping:.4g} }}\n'
     for thruster, ((x, y), along) in THRUSTERS.items():
         body = rig["bodies"][0]
         text += f'\n[[actuator]]\nname = "{thruster}"\nkind = "thruster"\nlink = "{body}/{body}"\nposition_m = [0.0, 0.0, 0.0]\n'

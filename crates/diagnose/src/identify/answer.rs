@@ -50,7 +50,7 @@ impl Frame<'_> {
 mod tests {
     use super::*;
     use crate::facts::Facts;
-    use crate::identify::coarse::of_rig;
+    use crate::identify::coarse::of_model;
     use crate::identify::forces::forces;
     use crate::identify::track::coordinates;
     use crate::linear::Stage;
@@ -99,7 +99,7 @@ mod tests {
         let (tapes, work) = (vec![tape(&free)], Work::new(&(), 1.0));
         let stage = Stage { tapes: &tapes, pace: Pace::even(1e-3), work: &work, doubt: noise::STATED, hears: None };
         let forces = forces(&Facts::new(&free, &tapes));
-        let coarse = of_rig(&stage, (&plant, &forces), (&[0], 8));
+        let coarse = of_model(&stage, (&free, &forces), (&[0], 8), &[]);
         let track = Track::cut((&stage, &coarse), (&free, forces.len()), 0, 8).expect("it is sampled");
         let freedoms = coordinates(&free, &track.intervals[0].start);
         let of = |built| Frame { stage: &stage, coarse: &coarse, built, freedoms: &freedoms, forces: &forces };

@@ -235,10 +235,17 @@ impl CommandTape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::facts::Facts;
+    use crate::identify::forces::forces;
+    use crate::noise;
+    use crate::plant::Plant;
     use crate::reading::{Reading, Value};
+    use crate::replay::Pace;
     use crate::tape::Commanded;
+    use crate::work::Work;
     use record::Role;
     use scenario::measure::Quantity;
+    use scenario::spec::{Effect, ParamValue};
     use spatial::Vec3;
 
     /// A joint and a body's place read every 10 ms for a second, the body's only at every second tick; a command that is a course, and one that switches.
@@ -307,5 +314,45 @@ mod tests {
             assert!((mean - (t + 0.02 - 0.001)).abs() < 1e-9, "{t}: {mean}");
         }
         assert_eq!(coarse.heard.span, tape.span);
+    }
+
+    /// A bench's arm that reads all joints every 4 ms; a spring at a wrist rings at some hundred rad/s where its damper is weak.
+    #[test]
+    fn a_spring_that_rings_asks_for_a_finer_clock_than_its_rig() {
+        const STEP: f64 = 2e-3;
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/rigs/arm-bench.toml");
+        let mut plant = Plant::new(scenario::load(file.as_ref(), &[]).expect("the scenario is in the repository"));
+        plant.channels = (1..=7).map(|j| format!("joint.joint_{j}.position")).collect();
+        let elastic = |damping: f64| {
+            let number = |key: &str, x: f64| (key.to_owned(), ParamValue::Number(x));
+            let params = BTreeMap::from([number("k", 900.0), number("d", damping)]);
+            Effect { name: "joint-elasticity".to_owned(), place: "joint:joint_6".to_owned(), params }
+        };
+        let rig = plant.build(&[]).expect("it builds");
+        let reading = |channel: &String| Reading {
+            channel: channel.clone(),
+            quantity: rig.sensor(channel).expect("it is measured").0.quantity(),
+            axes: vec![0],
+            sigma: 2e-5,
+            times: (0..=500).map(|i| 4e-3 * i as f64).collect(),
+            values: vec![Value::Vector(Vec3::zeros()); 501],
+            rounding: 0.0,
+            late_s: 0.0,
+        };
+        let tapes = vec![Tape::assemble(("run", Role::Fit), Vec::new(), plant.channels.iter().map(reading).collect())];
+        let work = Work::new(&(), 1.0);
+        let stage = Stage { tapes: &tapes, pace: Pace::even(STEP), work: &work, doubt: noise::STATED, hears: None };
+        let forces = forces(&Facts::new(&rig, &tapes));
+        let clock = |built: &Built, numbers: &[Variation]| {
+            let all = of_model(&stage, (built, &forces), (&[0], 16), numbers);
+            if all[0].is_exact { 0.0 } else { all[0].longest }
+        };
+        let alone = clock(&rig, &[]);
+        assert!(alone >= 2.0 * STEP, "{alone} s");
+        let built = plant.build(&[elastic(0.8)]).expect("it builds");
+        let by_damping = plant.build(&[elastic(0.81)]).expect("it builds");
+        let number = Variation { built: by_damping, step: 0.01, is_tolerated: false };
+        let ringing = clock(&built, &[number]);
+        assert!(ringing < alone, "{ringing} s beside {alone} s");
     }
 }
