@@ -11,6 +11,7 @@ pub mod fit;
 mod follow;
 pub mod forces;
 mod halve;
+mod heard;
 mod hold;
 pub mod marginal;
 mod power;
