@@ -3,10 +3,11 @@
 use crate::attempt::Attempt;
 use crate::catalogue;
 use crate::diagnosis::Rival;
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
 use crate::excerpts;
 use crate::facts::Facts;
-use crate::fit::{EffectSet, Fit};
+use crate::fit::Fit;
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach};
 use crate::linear::{Segment, Stage, Steps};

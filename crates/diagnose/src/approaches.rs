@@ -6,8 +6,9 @@
 //! touch that is looked at after a flight, not by the length of windows, until a stretch reaches into the next touch: that needs no approach of
 //! its own then.
 
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Effort, Fit, fit};
+use crate::fit::{Effort, Fit, fit};
 use crate::linear::{Segment, Stage};
 use crate::plant::Plant;
 use crate::reading::Reading;

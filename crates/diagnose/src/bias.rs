@@ -7,8 +7,9 @@
 //!
 //! are what it moves numbers by, and what nothing follows.
 
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Fit, pseudo_inverse};
+use crate::fit::{Fit, pseudo_inverse};
 use crate::hypothesis::Scale;
 use crate::linear::{Segment, SegmentLinear, Stage, Variation, eliminate};
 use crate::pace::{self, Discretisation};

@@ -9,9 +9,10 @@
 //! followed as a whole, windows with such commands are followed by both models.
 
 use crate::along::{self, Course};
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
-use crate::fit::{EffectSet, Effort};
+use crate::fit::Effort;
 use crate::identify::fit::{Fitted, Problem};
 use crate::identify::track::Track;
 use crate::limits::{MARGIN, RAISED, SAMPLES};

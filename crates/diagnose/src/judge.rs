@@ -1,7 +1,8 @@
 //! Prediction errors: every run, free and in windows, under the nominal and the corrected model, each with its own starts.
 
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Effort, Fit, fit};
+use crate::fit::{Effort, Fit, fit};
 use crate::linear::{Segment, Stage};
 use crate::lost;
 use crate::plant::{Built, Plant};

@@ -20,6 +20,7 @@ mod curves;
 mod delivery;
 mod detect;
 pub mod diagnosis;
+pub mod effect_set;
 pub mod error;
 pub mod evidence;
 mod excerpts;

@@ -3,8 +3,9 @@
 //! A law that came first as the synonym of the right one has company that mends what it is not; one that is richer than the truth spends its
 //! further numbers on what no law of the library takes away. Both go here, by the criterion of the search.
 
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Effort, Fit, fit};
+use crate::fit::{Effort, Fit, fit};
 use crate::hypothesis::{Alternative, Hypothesis};
 use crate::linear::Stage;
 use crate::plant::Plant;

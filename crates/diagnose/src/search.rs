@@ -8,8 +8,9 @@
 
 use crate::attempt::Attempt;
 use crate::choice::{brought_by, by_criterion, is_enough, put_corrections_first, take_further};
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Effort, Fit, UNDAMPED, fit};
+use crate::fit::{Effort, Fit, UNDAMPED, fit};
 use crate::hypothesis::Hypothesis;
 use crate::linear::{Segment, Stage};
 use crate::lost;

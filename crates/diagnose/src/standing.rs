@@ -4,8 +4,9 @@
 //! the length in which predictions are judged, shorter ones come first, and a set that follows these climbs to longer ones (continuation
 //! over the length, as in multiple shooting: Bock and Plitt 1984).
 
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Effort, Fit, fit};
+use crate::fit::{Effort, Fit, fit};
 use crate::hypothesis::Hypothesis;
 use crate::linear::{Segment, Stage};
 use crate::lost::{self, FEW, NEAR, POOR_WINDOW};

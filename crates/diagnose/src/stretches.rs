@@ -5,9 +5,10 @@
 //! runs fly as the nominal model does and windows had to be shortened, flights with the beginning of the next touch take the windows' place ([`crate::approaches`]).
 
 use crate::approaches::{Flight, begin, find_flights, is_sustained};
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
 use crate::excerpts::evenly;
-use crate::fit::{EffectSet, Effort, Fit, fit};
+use crate::fit::{Effort, Fit, fit};
 use crate::guess::guess;
 use crate::linear::{Segment, Stage, Steps, windows};
 use crate::plant::{Built, Plant};

@@ -5,10 +5,10 @@ use crate::along::USUAL;
 use crate::attempt::Attempt;
 use crate::condition::{self, Features, find_features};
 use crate::diagnosis::{Diagnosis, FORMAT, Found, Located as LocatedPlace, Remainder, Rival, Role, StdErr, Verdict};
+use crate::effect_set::EffectSet;
 use crate::evidence::{
     self, Evidence, Heat, HeatRow, Hypothesis, Identifiable, Level, Parameter, Remark, Status, bin_edges, mean_squares,
 };
-use crate::fit::EffectSet;
 use crate::hypothesis::Hypothesis as Member;
 use crate::linear::{Segment, Stage};
 use crate::run::Findings;

@@ -10,8 +10,9 @@
 //! anything: the fall is therefore judged by cross-validation, amplitudes from all folds of the segments but one, the fall in that one (Stone 1974). Sets grow by one effect at a time, the best few of each size go on (beam search), so that what was taken first
 //! can turn out to be nothing beside two others. A set whose amplitudes no effect can have (friction that drives) is none.
 
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, Fit, pseudo_inverse};
+use crate::fit::{Fit, pseudo_inverse};
 use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::{Segment, Stage, Variation};
 use crate::plant::Plant;

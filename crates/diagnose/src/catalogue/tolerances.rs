@@ -4,8 +4,8 @@
 //! it, cost no slot and no term of the criterion. Beyond that a corrected number has to earn its place as a finding.
 
 use super::hypotheses;
+use crate::effect_set::EffectSet;
 use crate::facts::Facts;
-use crate::fit::EffectSet;
 use crate::hypothesis::Hypothesis;
 use scenario::spec::Tolerance;
 

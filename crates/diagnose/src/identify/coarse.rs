@@ -21,10 +21,11 @@ const FEWEST: usize = 8;
 /// Changes of a command by cell from which on it is a course and not a switch.
 const DENSE: f64 = 0.5;
 
-/// Steps of derivatives that are tried, in those of predictions; in an interval of so many runs; and share of a derivative that they may move.
+/// Steps of derivatives that are tried, in those of predictions; in an interval of so many runs; and share of a derivative that they may move, by states and forces and by
+/// numbers: a step that is a tenth off leaves a hundredth to the next but one.
 const COARSER: [f64; 4] = [8.0, 4.0, 2.0, 1.0];
 const TRIED: usize = 3;
-const ALIKE: f64 = 0.02;
+const ALIKE: [f64; 2] = [0.02, 0.1];
 
 /// A run heard and read at a coarser clock.
 #[derive(Clone, Debug)]
@@ -68,7 +69,10 @@ pub fn of_model(
         let some: Vec<_> = runs.iter().take(TRIED).enumerate().filter_map(cut).collect();
         let freedoms = coordinates(built, &some.first()?.1.start);
         let exact = Frame { stage, coarse: &fine, built, freedoms: &freedoms, forces };
-        let alike = |coarse: &Vec<Coarse>| exact.differs(&Frame { coarse, ..exact }, &some, variations) < ALIKE;
+        let alike = |coarse: &Vec<Coarse>| {
+            let [states, numbers] = exact.differs(&Frame { coarse, ..exact }, &some, variations);
+            states < ALIKE[0] && numbers < ALIKE[1]
+        };
         COARSER.iter().map(|k| all_at(stage, Some(k * stage.pace.step))).find(alike)
     };
     let found = if holds(built) { None } else { tried() };

@@ -10,9 +10,10 @@ use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor
 use super::shown::shown;
 use super::step::{next_sizes, within_bounds};
 use super::track::{Base, Bases, Column, Frame, Interval, Link, Side, Source, Track, coordinates};
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
-use crate::fit::{EffectSet, first_sizes, vary};
+use crate::fit::{first_sizes, vary};
 use crate::held::holds;
 use crate::linear::{Stage, Variation};
 use crate::plant::{Built, Plant};

@@ -2,8 +2,9 @@
 
 use super::coarse;
 use super::fit::{Fitted, Problem};
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
-use crate::fit::{EffectSet, first_sizes, vary};
+use crate::fit::{first_sizes, vary};
 
 impl Problem<'_> {
     /// The same at a clock at which derivatives of a set, those by its numbers too, are what they are: what was found may be faster than what a nominal model

@@ -1,7 +1,8 @@
 //! Steps of a set's numbers: of a fit, and of difference quotients.
 
 use super::marginal::Estimate;
-use crate::fit::{EffectSet, pseudo_inverse};
+use crate::effect_set::EffectSet;
+use crate::fit::pseudo_inverse;
 use crate::hypothesis::Scale;
 use nalgebra::{DMatrix, DVector};
 

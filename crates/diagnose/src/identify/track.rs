@@ -213,8 +213,8 @@ impl Frame<'_> {
         Some(Link { s, f, a, b })
     }
 
-    /// Largest share of a derivative, by states, forces and numbers, of some intervals by which those at a coarser clock differ from these.
-    pub fn differs(&self, coarser: &Self, of: &[(usize, Interval)], variations: &[Variation]) -> f64 {
+    /// Largest share of a derivative of some intervals by which those at a coarser clock differ from these: by states and forces, and by numbers.
+    pub fn differs(&self, coarser: &Self, of: &[(usize, Interval)], variations: &[Variation]) -> [f64; 2] {
         let differ = |(run, interval): &(usize, Interval)| {
             let read = |frame: &Self| {
                 let few = Arc::new(frame.coarse[*run].few(&self.stage.tapes[*run], &interval.members));
@@ -228,10 +228,11 @@ impl Frame<'_> {
                 let (y, d) = matrices(&numbers, rows, states);
                 Some([s, f, a, b, y, d])
             };
-            let Some((ours, theirs)) = read(self).zip(read(coarser)) else { return f64::INFINITY };
-            ours.iter().zip(&theirs).map(share_of_change).fold(0.0, f64::max)
+            let Some((ours, theirs)) = read(self).zip(read(coarser)) else { return [f64::INFINITY; 2] };
+            let shares: Vec<f64> = ours.iter().zip(&theirs).map(share_of_change).collect();
+            [&shares[..LINK], &shares[LINK..]].map(|part| part.iter().copied().fold(0.0, f64::max))
         };
-        of.par_iter().map(differ).reduce(|| 0.0, f64::max)
+        of.par_iter().map(differ).reduce(|| [0.0; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])])
     }
 
     /// How rates answer to unknown forces at once, in a model that an interval may not be of: ∂v/∂f over a short while, a row a rate.
@@ -549,6 +550,9 @@ struct Passed {
 pub(super) fn told(is_glanced: bool, interval: &Interval, read: DVector<f64>) -> DVector<f64> {
     if is_glanced { interval.few.expanded(&read) } else { read }
 }
+
+/// Matrices of a link.
+const LINK: usize = 4;
 
 /// Largest share of a column's length by which another one differs from it.
 fn share_of_change((a, b): (&DMatrix<f64>, &DMatrix<f64>)) -> f64 {

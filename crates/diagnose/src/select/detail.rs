@@ -4,7 +4,7 @@
 //! short bursts, and intervals that are not followed cost more than all that it explains brings.
 
 use super::search::{LOOK, criterion};
-use crate::fit::EffectSet;
+use crate::effect_set::EffectSet;
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem};
 use crate::parsimony::plainer;

@@ -7,8 +7,8 @@
 
 use super::kin::are_kin;
 use super::search::{FAR, GLANCE, LOOK, Tried, criterion, to_the_end};
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
-use crate::fit::EffectSet;
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem};
 use crate::screen::Score;

@@ -1,8 +1,8 @@
 //! All hypotheses as columns beside one linear model of the runs.
 
 use super::kin::are_kin;
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
-use crate::fit::EffectSet;
 use crate::hypothesis::{Hypothesis, Tier};
 use crate::linear::Variation;
 use crate::plant::Plant;
