@@ -22,10 +22,10 @@ const FEWEST: usize = 8;
 const DENSE: f64 = 0.5;
 
 /// Steps of derivatives that are tried, in those of predictions; in an interval of so many runs; and share of a derivative that they may move, by states and forces and by
-/// numbers: a step that is a tenth off leaves a hundredth to the next but one.
+/// numbers: a fit that goes by halves still comes to its end.
 const COARSER: [f64; 4] = [8.0, 4.0, 2.0, 1.0];
 const TRIED: usize = 3;
-const ALIKE: [f64; 2] = [0.02, 0.1];
+const ALIKE: [f64; 2] = [0.02, 0.5];
 
 /// A run heard and read at a coarser clock.
 #[derive(Clone, Debug)]

@@ -8,7 +8,7 @@ use crate::fit::{first_sizes, vary};
 
 impl Problem<'_> {
     /// The same at a clock at which derivatives of a set, those by its numbers too, are what they are: what was found may be faster than what a nominal model
-    /// has.
+    /// has. That of a model with dry friction stays as it is.
     pub fn heard_by(self, set: &EffectSet) -> Result<Self, DiagnoseError> {
         if self.coarse.first().is_none_or(|c| c.is_exact) || !set.has_findings() {
             return Ok(self);
@@ -16,8 +16,12 @@ impl Problem<'_> {
         let is_finding = |((m, _), _): &((usize, usize), f64)| !set.members[*m].0.is_tolerated();
         let (slots, sizes): (Vec<_>, Vec<f64>) =
             set.slots().into_iter().zip(first_sizes(set)).filter(is_finding).unzip();
-        let variations = vary(self.plant, set, &slots, &sizes)?;
         let built = self.plant.build(&set.effects())?;
+        // Corners differ from clock to clock, and both ends of a quotient have the same.
+        if !built.model.is_smooth() {
+            return Ok(self);
+        }
+        let variations = vary(self.plant, set, &slots, &sizes)?;
         let coarse = coarse::of_model(&self.stage, (&built, &self.forces), (&self.runs, self.knots), &variations);
         Ok(Self { coarse, ..self })
     }
