@@ -23,7 +23,7 @@ const DENSE: f64 = 0.5;
 
 /// Steps of derivatives that are tried, in those of predictions; in an interval of so many runs; and share of a derivative that they may move, by states and forces and by
 /// numbers: a fit that goes by halves still comes to its end.
-const COARSER: [f64; 4] = [8.0, 4.0, 2.0, 1.0];
+const COARSER: [f64; 3] = [8.0, 4.0, 2.0];
 const TRIED: usize = 3;
 const ALIKE: [f64; 2] = [0.02, 0.5];
 
@@ -53,7 +53,8 @@ pub struct Few {
     told: Vec<(u16, [u16; 4], [f32; 4])>,
 }
 
-/// All runs at the coarsest clock at which a model's derivatives, those by some numbers too, are what they are; as they were recorded where parts touch.
+/// All runs at the coarsest clock at which a model's derivatives are what they are; as they were recorded where parts touch. With some numbers their derivatives
+/// count too, and all are held against exact ones, which they are where no clock will do.
 pub fn of_model(
     stage: &Stage<'_>,
     (built, forces): (&Built, &[Force]),
@@ -61,6 +62,8 @@ pub fn of_model(
     variations: &[Variation],
 ) -> Arc<Vec<Coarse>> {
     let fine = all_at(stage, None);
+    let exact: Vec<Coarse> = fine.iter().map(|c| Coarse { is_exact: true, ..c.clone() }).collect();
+    let (held_against, last) = if variations.is_empty() { (&fine, None) } else { (&exact, Some(fine.clone())) };
     let tried = || {
         let cut = |(k, run): (usize, &usize)| {
             let track = Track::cut((stage, &fine), (built, forces.len()), *run, knots).ok()?;
@@ -68,15 +71,15 @@ pub fn of_model(
         };
         let some: Vec<_> = runs.iter().take(TRIED).enumerate().filter_map(cut).collect();
         let freedoms = coordinates(built, &some.first()?.1.start);
-        let exact = Frame { stage, coarse: &fine, built, freedoms: &freedoms, forces };
+        let ours = Frame { stage, coarse: held_against, built, freedoms: &freedoms, forces };
         let alike = |coarse: &Vec<Coarse>| {
-            let [states, numbers] = exact.differs(&Frame { coarse, ..exact }, &some, variations);
+            let [states, numbers] = ours.differs(&Frame { coarse, ..ours }, &some, variations);
             states < ALIKE[0] && numbers < ALIKE[1]
         };
-        COARSER.iter().map(|k| all_at(stage, Some(k * stage.pace.step))).find(alike)
+        COARSER.iter().map(|k| all_at(stage, Some(k * stage.pace.step))).chain(last).find(alike)
     };
     let found = if holds(built) { None } else { tried() };
-    Arc::new(found.unwrap_or(fine))
+    Arc::new(found.unwrap_or_else(|| held_against.clone()))
 }
 
 /// All runs as they are judged.
@@ -95,7 +98,7 @@ impl Coarse {
         instants.dedup_by(|b, a| *b - *a <= SAME);
         let Some(longest) = longest else {
             let heard = Arc::new(silent(tape, tape.commands.clone()));
-            return Self { heard, longest: own, is_exact: true, instants, most: 0 };
+            return Self { heard, longest: own, is_exact: false, instants, most: 0 };
         };
         let mut gaps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
         gaps.sort_by(f64::total_cmp);

@@ -1,6 +1,6 @@
 //! A problem at the clock at which the derivatives of what was found are what they are.
 
-use super::coarse;
+use super::coarse::{self, Coarse};
 use super::fit::{Fitted, Problem};
 use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
@@ -23,7 +23,8 @@ impl Problem<'_> {
         }
         let variations = vary(self.plant, set, &slots, &sizes)?;
         let coarse = coarse::of_model(&self.stage, (&built, &self.forces), (&self.runs, self.knots), &variations);
-        Ok(Self { coarse, ..self })
+        let longest = |clock: &[Coarse]| clock.first().map_or(0.0, |c| c.longest);
+        Ok(if longest(&coarse) > longest(&self.coarse) { self } else { Self { coarse, ..self } })
     }
 
     /// A fit at this clock where another one was fitted at a different one.
