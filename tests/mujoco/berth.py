@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Recordings of two rigs in contact by MuJoCo, each with something concealed, beside scenarios that know nothing of it.
 
-    berth.py OUT [CASE…]        needs mujoco 4.0 and numpy from PyPI; without CASE all of CASES
+    berth.py OUT [CASE…]                needs mujoco 4.0 and numpy from PyPI; without CASE all of CASES
+    berth.py OUT compare SOFTDOCK       the same five starts of `berth` by both simulators, unpushed, through their first touch; needs pyarrow too
 
 OUT/<rig>/scenario.toml, OUT/<rig>/<case>/{recording.toml,run-1.csv …}, OUT/keys.json, as record.py writes them.
 
@@ -13,6 +14,7 @@ scenario's stiffness is right for one attitude and what is left is MuJoCo's own.
 
 import json
 import pathlib
+import subprocess
 import sys
 
 import mujoco
@@ -253,8 +255,49 @@ def write_scenario(folder, name, rig):
     (folder / "scenario.toml").write_text(text)
 
 
+def compare(folder, softdock):
+    """What a second from each start is by both simulators: largest differences of places and body rates, and the peak of the normal force."""
+    import pyarrow.parquet
+
+    name, rig = "berth", RIGS["berth"]
+    write_scenario(folder, name, rig)
+    print("| start | touches at, s | place after 1 s, µm | rates after it, mrad/s | largest on the way | changed by the touch | peak force, N |\n| --- | --- | --- | --- | --- | --- | --- |")
+    for run in range(RUNS):
+        model = model_of(name, rig, [])
+        data = mujoco.MjData(model)
+        begin(name, data, np.random.default_rng([0, run]))
+        scenario = (folder / "scenario.toml").read_text().replace("step_s = 5e-4", f"step_s = {STEP}")
+        for i, x in enumerate(("-0.7", "0.0")):
+            q, v = data.qpos[7 * i : 7 * i + 3], data.qvel[6 * i : 6 * i + 6]
+            here = f"pose = {{ position_m = {[*map(float, q)]} }}\n"
+            twist = f"twist = {{ linear_m_per_s = {[*map(float, v[:3])]}, angular_deg_per_s = {[*map(float, np.degrees(v[3:]))]} }}\n"
+            scenario = scenario.replace(f"pose = {{ position_m = [{x}, 0.0, 0.0] }}\n", here + twist, 1)
+        (folder / "start.toml").write_text(scenario + "\n[output]\nlog_rate_hz = 10000.0\n")
+        subprocess.run([softdock, "run", folder / "start.toml", "--out", folder / "start"], check=True, stdout=subprocess.DEVNULL)
+        read = pyarrow.parquet.read_table(folder / "start" / "signals.parquet").to_pydict()
+        columns = lambda quantity: np.array([[read[f"body.{b}.{quantity}.{a}"] for a in "xyz"] for b in rig["bodies"]])
+        places, rates = columns("position"), columns("angular_velocity")
+        worst, first, peak = [0.0, 0.0], data.qvel[3:6].copy(), 0.0
+        force, touched = np.zeros(6), None
+        for step in range(round(1.0 / STEP) + 1):
+            off = [(places[i, :, step] - data.qpos[7 * i : 7 * i + 3], rates[i, :, step] - data.qvel[6 * i + 3 : 6 * i + 6]) for i in range(2)]
+            last = [max(np.abs(pair[k]).max() for pair in off) for k in range(2)]
+            worst = [max(a, b) for a, b in zip(worst, last)]
+            mujoco.mj_step(model, data)
+            for contact in range(data.ncon):
+                mujoco.mj_contactForce(model, data, contact, force)
+                touched = touched if touched is not None or force[0] <= 0.0 else step * STEP
+                peak = max(peak, force[0])
+        changed = np.abs(data.qvel[3:6] - first).max()
+        own = max(read["contact.chaser.target.normal_force"])
+        print(f"| {run + 1} | {touched:.4f} | {1e6 * last[0]:.0f} | {1e3 * last[1]:.2f} | {1e3 * worst[1]:.1f} | {1e3 * changed:.1f} | {own:.1f}, {peak:.1f} by MuJoCo |")
+
+
 def main():
     out, wanted = pathlib.Path(sys.argv[1]), sys.argv[2:]
+    if wanted[:1] == ["compare"]:
+        (out / "berth").mkdir(parents=True, exist_ok=True)
+        return compare(out / "berth", pathlib.Path(wanted[1]).resolve())
     keys = {}
     for number, (name, rig) in enumerate(RIGS.items()):
         folder = out / name
