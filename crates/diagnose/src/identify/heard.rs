@@ -18,7 +18,7 @@ impl Problem<'_> {
             set.slots().into_iter().zip(first_sizes(set)).filter(is_finding).unzip();
         let built = self.plant.build(&set.effects())?;
         // Corners differ from clock to clock, and both ends of a quotient have the same.
-        if !built.model.is_smooth() {
+        if built.model.coordinates.iter().any(|c| c.dry.is_some()) {
             return Ok(self);
         }
         let variations = vary(self.plant, set, &slots, &sizes)?;
