@@ -100,10 +100,11 @@ pub(crate) fn told_by_all_runs(
     own: &Facts,
     course: Course,
 ) -> Result<Course, DiagnoseError> {
-    let problem = problem(stage, plant, own, Role::Fit).heard_by(&course.found.best.set)?;
+    let problem = problem(stage, plant, own, Role::Fit);
     if course.found.best.tracks.len() == problem.runs.len() {
         return Ok(course);
     }
+    let problem = problem.heard_by(&course.found.best.set)?;
     let [nominal, along] = problem.along([&course.found.nominal, &course.found.best])?;
     let set = course.found.best.set.clone();
     let best = if set.members.is_empty() { along } else { problem.fit(&along, set, ALL_RUNS)? };
@@ -161,10 +162,11 @@ pub(crate) fn fit_to_all(
         return Ok(course);
     }
     // Where forces are left they are what limits the numbers, not how many samples there are.
-    let problem = problem(all, plant, own, Role::Fit).heard_by(&best.set)?;
+    let problem = problem(all, plant, own, Role::Fit);
     if problem.power(best) > NEXT_TO_NOTHING * problem.power(&course.found.nominal) {
         return Ok(course);
     }
+    let problem = problem.heard_by(&best.set)?;
     let best = problem.fit(&problem.onto(best)?, best.set.clone(), LAST)?;
     let left = [course.left[0], remainder(&problem, &best)?];
     Ok(Course { found: Found { best, ..course.found }, left })

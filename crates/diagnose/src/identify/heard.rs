@@ -5,6 +5,7 @@ use super::fit::{Fitted, Problem};
 use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
 use crate::fit::{first_sizes, vary};
+use crate::held::holds;
 
 impl Problem<'_> {
     /// The same at a clock at which derivatives of a set, those by its numbers too, are what they are: what was found may be faster than what a nominal model
@@ -17,8 +18,8 @@ impl Problem<'_> {
         let (slots, sizes): (Vec<_>, Vec<f64>) =
             set.slots().into_iter().zip(first_sizes(set)).filter(is_finding).unzip();
         let built = self.plant.build(&set.effects())?;
-        // Corners differ from clock to clock, and both ends of a quotient have the same.
-        if built.model.coordinates.iter().any(|c| c.dry.is_some()) {
+        // Corners differ from clock to clock, and both ends of a quotient have the same; what holds is replayed as it is judged anyway.
+        if holds(&built) || built.model.coordinates.iter().any(|c| c.dry.is_some()) {
             return Ok(self);
         }
         let variations = vary(self.plant, set, &slots, &sizes)?;
