@@ -136,7 +136,7 @@ pub(crate) fn at_suiting_steps(
     if best.set.members.is_empty() || judged.rms() >= lost::NEAR {
         return Ok((course, chosen));
     }
-    let found = pace::suited(stage, (&judged.built, &judged.segments), judged.count);
+    let found = pace::suited(stage, &judged);
     if found.pace == stage.pace {
         return Ok((course, found));
     }

@@ -3,6 +3,7 @@
 //! The step is halved, from the longest stretch that no sample and no command cuts, until a replay and one of half its step differ by less
 //! than a small part of the noise (of what the model misses there, where nothing touches) over every window. Steps of free flight are chosen alike, with those in contact held.
 
+use crate::fit::Fit;
 use crate::linear::{Segment, Stage};
 use crate::number::short;
 use crate::plant::{Built, Plant};
@@ -33,6 +34,8 @@ const FINER: u32 = 2;
 const FREE: f64 = 0.125;
 /// Part of what a model misses that counts like noise: steps need not be finer than that tells.
 const OF_THE_MISS: f64 = 0.3;
+/// Part of what a corrected model leaves above noise that steps may move: a hundredth of its mean square.
+const OF_THE_REST: f64 = 0.1;
 /// Error (units of noise) up to which steps that suit a corrected model are looked for.
 pub(crate) const NEAR: f64 = 1.5;
 /// Windows that are looked at.
@@ -124,9 +127,11 @@ pub fn refine(stage: &Stage<'_>, built: &Built, runs: &[Segment], tolerance: f64
     }
 }
 
-/// Steps that suit a corrected model where so many scalars are told in some segments, said.
-pub(crate) fn suited(stage: &Stage<'_>, (built, segments): (&Built, &[Segment]), count: usize) -> Discretisation {
-    let found = refine(stage, built, segments, tolerance_of(count));
+/// Steps that suit a corrected model as it stands, said: what it leaves is not theirs, and is more than they move.
+pub(crate) fn suited(stage: &Stage<'_>, judged: &Fit) -> Discretisation {
+    let left = (judged.rms().powi(2) - 1.0).max(0.0).sqrt();
+    let tolerance = tolerance_of(judged.count).max(OF_THE_REST * left);
+    let found = refine(stage, &judged.built, &judged.segments, tolerance);
     stage.work.watch.step(&found.words());
     found
 }

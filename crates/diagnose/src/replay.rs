@@ -442,7 +442,7 @@ fn advance_to(world: &mut World, time: f64, pace: Pace, mounts: &Mounts) -> Resu
     let h = left / f64::from(steps);
     let mut has_touched = false;
     for _ in 0..steps {
-        world.advance_by(h)?;
+        world.advance_meeting(h)?;
         has_touched |= world.touches().next().is_some();
     }
     Ok(has_touched)

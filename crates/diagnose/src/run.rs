@@ -518,7 +518,7 @@ fn suited(
     }
     // What is left may be what rough steps leave, which no derivative tells.
     match judged.is_significant() {
-        true => Ok(pace::suited(stage, (&judged.built, &judged.segments), judged.count)),
+        true => Ok(pace::suited(stage, judged)),
         false => bias::suited(stage, plant, judged),
     }
 }

@@ -37,6 +37,7 @@ mod environment;
 mod error;
 mod force;
 mod mechanism;
+mod meet;
 mod model;
 mod pivots;
 mod push;

@@ -32,6 +32,8 @@ pub(crate) struct Workspace {
     pub points: Vec<ContactPoint>,
     pub reach: Vec<f64>,
     pub touches: Vec<Touch>,
+    /// Points (pair, feature) that pressed before the present step, where touches are sought.
+    pub pressing: Vec<(u32, u64)>,
     /// What the touches' laws answered last, in their order.
     pub answers: Vec<Answer>,
     pub couplings: Vec<crate::mechanism::Coupling>,
@@ -101,6 +103,7 @@ impl Workspace {
             points: Vec::new(),
             reach: vec![0.0; bodies],
             touches: Vec::new(),
+            pressing: Vec::new(),
             answers: Vec::new(),
             couplings: Vec::with_capacity(model.mechanisms.len()),
             pivots: Vec::new(),

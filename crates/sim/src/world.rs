@@ -25,8 +25,8 @@ pub struct World {
     model: Arc<Model>,
     pub(crate) state: State,
     pub(crate) ws: Workspace,
-    is_fresh: bool,
-    integrator: Integrator,
+    pub(crate) is_fresh: bool,
+    pub(crate) integrator: Integrator,
     pub(crate) perception: Option<Arc<dyn Perception>>,
 }
 

@@ -31,6 +31,7 @@ mod mechanism_energy;
 mod mechanism_holds;
 mod mechanism_latches;
 mod mechanism_struts;
+mod meeting;
 mod momentum;
 mod orbit;
 mod pushes;
