@@ -13,9 +13,8 @@ pub(crate) struct Feed<'a> {
 
 impl<'a> Feed<'a> {
     pub(crate) fn new(tape: &'a Tape, time: f64) -> Self {
-        let mut feed = Self { tape, tick: 0, at: vec![0; tape.commands.len()] };
-        feed.turn(tape, time);
-        feed
+        let at = tape.commands.iter().map(|c| c.times.partition_point(|t| *t <= time + SAME)).collect();
+        Self { tape, tick: tape.ticks.partition_point(|t| *t <= time + SAME), at }
     }
 
     pub(crate) fn next_tick(&self, tape: &Tape) -> f64 {
