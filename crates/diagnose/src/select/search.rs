@@ -127,7 +127,8 @@ pub fn search(
     // A joint that yields by now is no more one that may begin to, and yet that is what a joint with play becomes.
     known.extend(first);
     let before = now.score;
-    let free = relaxed(problem, now, many);
+    // Where noise alone is left, nothing tells of what laws hold in reserve.
+    let free = if remainder(problem, &now)?.is_noise() { now } else { relaxed(problem, now, many) };
     let free = if free.score < before { to_the_end(problem, free) } else { free };
     let plain = simplified(problem, free, &known, (many, all))?;
     let titles = plain.set.titles();
