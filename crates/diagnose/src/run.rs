@@ -552,8 +552,8 @@ fn left_by(
 }
 
 /// The last fit, and what is left to do where there are more samples than it looked at.
-const FINAL: Effort = Effort { iterations: 6, share: 1e-5, floor: 0.02, damping: UNDAMPED, ..Effort::NUMBERS };
-const POLISH: Effort = Effort { iterations: 2, ..FINAL };
+const FINAL: Effort = Effort { iterations: 6, share: 1e-5, floor: 0.002, damping: UNDAMPED, ..Effort::NUMBERS };
+const POLISH: Effort = Effort { iterations: 10, ..FINAL };
 /// Samples of a channel of a run that are enough to search by.
 const ENOUGH: usize = 3000;
 

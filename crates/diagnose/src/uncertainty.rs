@@ -1,17 +1,19 @@
 //! How sure the numbers of a fitted set are.
 //!
 //! The inverse of A, the curvature of the cost, is too sure where slip and impact make the cost ragged and where what is left is not
-//! white. Three further looks widen it, the largest of the first three counts:
+//! white. Further looks widen it, the largest of the first three counts:
 //!
 //! - scatter: (A⁻¹ M A⁻¹)ᵢᵢ with M the scatter of the segments' gradients about their mean (the sandwich of White 1982);
 //! - profile: how far one number must go, the others along with it and every start settled anew, for the cost to rise by 4, the
 //!   point two standard errors out;
+//! - way: what derivatives still promise where no step brings it, −A⁻¹ Gᵀr, added as a variance;
 //! - step: what ever shorter steps would move the numbers by, twice what those of half the length do (first order), −2 A⁻¹ G⊥ᵀ(r_half − r), added as a variance.
 
 use crate::bias::Halved;
 use crate::error::DiagnoseError;
-use crate::fit::{Fit, pseudo_inverse};
+use crate::fit::{Effort, Fit, fit, pseudo_inverse};
 use crate::linear::{Segment, SegmentLinear, Stage};
+use crate::pace::touches;
 use crate::plant::Plant;
 use nalgebra::{DMatrix, DVector};
 
@@ -48,6 +50,7 @@ pub(crate) fn estimate(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<
     let gradients: Vec<DVector<f64>> =
         linear.iter().map(|l| l.reduced.view((0, n + 1), (n, 1)).column(0).into()).collect();
     let scatter = calc_scatter(&inverse, &gradients);
+    let way = &inverse * gradients.iter().sum::<DVector<f64>>();
     let mut widths = DVector::zeros(n);
     let mut from_profile = vec![false; n];
     for i in 0..n {
@@ -59,7 +62,7 @@ pub(crate) fn estimate(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<
         let curvature = inverse[(i, i)].max(0.0).sqrt();
         let profile = calc_profile(stage, plant, (found, &linear), (&inverse, i));
         from_profile[i] = profile > SAME * curvature && profile.powi(2) >= scatter[i];
-        widths[i] = curvature.powi(2).max(scatter[i]).max(profile.powi(2)) + (TO_THE_END * shift[i]).powi(2);
+        widths[i] = curvature.powi(2).max(scatter[i]).max(profile.powi(2)) + (TO_THE_END * shift[i]).powi(2) + way[i].powi(2);
     }
     let growth = |i: usize| if inverse[(i, i)] > 0.0 { (widths[i] / inverse[(i, i)]).sqrt() } else { 1.0 };
     let covariance = DMatrix::from_fn(n, n, |i, j| growth(i) * growth(j) * inverse[(i, j)]);
@@ -96,7 +99,10 @@ fn calc_profile(
         let set = found.set.moved(&slots, &theta);
         let actual: Vec<f64> = slots.iter().map(|(m, c)| set.members[*m].1[*c] - found.set.members[*m].1[*c]).collect();
         let built = plant.build(&set.effects()).ok()?;
-        let (_, cost) = stage.follow(&built, &found.segments, linear, &actual);
+        let (segments, cost) = stage.follow(&built, &found.segments, linear, &actual);
+        // Through touches a start that is followed by old derivatives is short of what it comes to by more than a profile rises.
+        let settled = touches(&built).then(|| fit(stage, plant, set.frozen(), segments, Effort::STARTS));
+        let cost = settled.and_then(Result::ok).map_or(cost, |settled| cost.min(settled.cost));
         cost.is_finite().then_some(cost - found.cost)
     };
     let side = |sign: f64| {
