@@ -62,7 +62,11 @@ impl Discretisation {
 pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> Discretisation {
     let every = segments.len().div_ceil(WINDOWS).max(1);
     let some: Vec<&Segment> = segments.iter().skip(every / 2).step_by(every).collect();
-    let longest = stage.tapes.iter().map(longest_stretch).fold(own, f64::max);
+    // Derivatives are taken in steps of twice the length and more, which a bristle has to bear as well: what the scenario resolves its contacts by bounds them.
+    let longest = match touches(built) {
+        true => own,
+        false => stage.tapes.iter().map(longest_stretch).fold(own, f64::max),
+    };
     let finest = own * 0.5f64.powi(FINER as i32);
     let (found, mut worst) = halved(stage, built, &some, Pace::even(longest), (TOLERANCE, finest));
     let step = found.step;

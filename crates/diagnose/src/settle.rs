@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// Rounds in which starts follow a changed model along old columns.
 const SETTLINGS: usize = 2;
 /// Promised share of the cost below which a start has settled.
-const SETTLED: f64 = 1e-5;
+const SETTLED: f64 = 1e-3;
 /// Most dampings tried for one linearisation.
 const DAMPINGS: usize = 6;
 /// Smallest damping beside none.

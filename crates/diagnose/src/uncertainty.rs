@@ -11,9 +11,8 @@
 
 use crate::bias::Halved;
 use crate::error::DiagnoseError;
-use crate::fit::{Effort, Fit, fit, pseudo_inverse};
+use crate::fit::{Fit, pseudo_inverse};
 use crate::linear::{Segment, SegmentLinear, Stage};
-use crate::pace::touches;
 use crate::plant::Plant;
 use nalgebra::{DMatrix, DVector};
 
@@ -62,7 +61,8 @@ pub(crate) fn estimate(stage: &Stage<'_>, plant: &Plant, found: &Fit) -> Result<
         let curvature = inverse[(i, i)].max(0.0).sqrt();
         let profile = calc_profile(stage, plant, (found, &linear), (&inverse, i));
         from_profile[i] = profile > SAME * curvature && profile.powi(2) >= scatter[i];
-        widths[i] = curvature.powi(2).max(scatter[i]).max(profile.powi(2)) + (TO_THE_END * shift[i]).powi(2) + way[i].powi(2);
+        widths[i] =
+            curvature.powi(2).max(scatter[i]).max(profile.powi(2)) + (TO_THE_END * shift[i]).powi(2) + way[i].powi(2);
     }
     let growth = |i: usize| if inverse[(i, i)] > 0.0 { (widths[i] / inverse[(i, i)]).sqrt() } else { 1.0 };
     let covariance = DMatrix::from_fn(n, n, |i, j| growth(i) * growth(j) * inverse[(i, j)]);
@@ -99,10 +99,7 @@ fn calc_profile(
         let set = found.set.moved(&slots, &theta);
         let actual: Vec<f64> = slots.iter().map(|(m, c)| set.members[*m].1[*c] - found.set.members[*m].1[*c]).collect();
         let built = plant.build(&set.effects()).ok()?;
-        let (segments, cost) = stage.follow(&built, &found.segments, linear, &actual);
-        // Through touches a start that is followed by old derivatives is short of what it comes to by more than a profile rises.
-        let settled = touches(&built).then(|| fit(stage, plant, set.frozen(), segments, Effort::STARTS));
-        let cost = settled.and_then(Result::ok).map_or(cost, |settled| cost.min(settled.cost));
+        let (_, cost) = stage.follow(&built, &found.segments, linear, &actual);
         cost.is_finite().then_some(cost - found.cost)
     };
     let side = |sign: f64| {
