@@ -13,8 +13,8 @@ pub(crate) struct Feed<'a> {
 
 impl<'a> Feed<'a> {
     pub(crate) fn new(tape: &'a Tape, time: f64) -> Self {
-        let at = tape.commands.iter().map(|c| c.times.partition_point(|t| *t <= time + SAME)).collect();
-        Self { tape, tick: tape.ticks.partition_point(|t| *t <= time + SAME), at }
+        let passed = |times: &[f64]| times.partition_point(|t| *t <= time + SAME);
+        Self { tape, tick: passed(&tape.ticks), at: tape.commands.iter().map(|c| passed(&c.times)).collect() }
     }
 
     pub(crate) fn next_tick(&self, tape: &Tape) -> f64 {

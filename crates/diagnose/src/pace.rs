@@ -1,6 +1,6 @@
 //! How finely replays advance: the diagnosis' own error against the noise of the sensors.
 //!
-//! The step is halved, from the longest stretch that no sample and no command cuts, until a replay and one of half its step differ by less
+//! The step is halved, from the longest stretch that no sample and no command cuts (where parts touch, from the scenario's own step), until a replay and one of half its step differ by less
 //! than a small part of the noise (of what the model misses there, where nothing touches) over every window. Steps of free flight are chosen alike, with those in contact held.
 
 use crate::fit::Fit;

@@ -43,22 +43,38 @@ impl World {
 
     /// Advances by what is left of a step of `h` s, or until just before a point begins to touch; how far, and whether one is about to.
     fn advance_up_to_a_touch(&mut self, left: f64, h: f64) -> Result<(f64, bool), StepError> {
-        let Workspace { touches, pressing, .. } = &mut self.ws;
-        pressing.clear();
-        pressing.extend(touches.iter().filter(|t| t.gap < 0.0).map(|t| (t.pair, t.feature)));
+        self.note_what_presses();
         let mut trial = left;
-        for _ in 0..TRIALS {
+        for attempt in 0..TRIALS {
             self.advance_by(trial)?;
             let Some(age) = self.calc_age_of_new_touch(trial) else { return Ok((trial, trial < left)) };
             if trial <= ACROSS * h {
                 return Ok((trial, false));
             }
+            let work = self.state.work;
             self.return_to_backup();
+            // What was computed for it stays counted.
+            self.state.work = work;
+            // A world that has made no step yet knows nothing of what presses in it already.
+            if attempt == 0 && self.ws.pressing.is_empty() {
+                self.refresh_touches();
+                self.note_what_presses();
+                if !self.ws.pressing.is_empty() {
+                    continue;
+                }
+            }
             let before = trial - age - BEFORE * h;
             trial = if before > BEFORE * h { before } else { (ACROSS * h).min(left) };
         }
         self.advance_by(trial)?;
         Ok((trial, false))
+    }
+
+    /// Remembers the points that press by the last look at them.
+    fn note_what_presses(&mut self) {
+        let Workspace { touches, pressing, .. } = &mut self.ws;
+        pressing.clear();
+        pressing.extend(touches.iter().filter(|t| t.gap < 0.0).map(|t| (t.pair, t.feature)));
     }
 
     /// For how long the oldest of the points that a step has brought presses, s; none where it has brought none.
@@ -71,14 +87,5 @@ impl World {
         let new = touches.iter().filter(|t| t.gap < 0.0 && is_new(t.pair, t.feature));
         let age = |approach: f64, gap: f64| if approach > 0.0 { -gap / approach } else { f64::INFINITY };
         new.map(|t| age(-t.normal.dot(&t.u), t.gap).min(OLDEST * step)).max_by(f64::total_cmp)
-    }
-
-    /// Back to where the last step began; what was computed for it stays counted.
-    fn return_to_backup(&mut self) {
-        let work = self.state.work;
-        self.state.copy_from(&self.ws.backup);
-        self.state.work = work;
-        self.is_fresh = false;
-        self.refresh();
     }
 }

@@ -25,7 +25,7 @@ pub struct World {
     model: Arc<Model>,
     pub(crate) state: State,
     pub(crate) ws: Workspace,
-    pub(crate) is_fresh: bool,
+    is_fresh: bool,
     pub(crate) integrator: Integrator,
     pub(crate) perception: Option<Arc<dyn Perception>>,
 }
@@ -218,10 +218,8 @@ impl World {
             if self.ws.touches.is_empty() {
                 return Ok(true);
             }
-            self.state.copy_from(&self.ws.backup);
             self.ws.touches.clear();
-            self.is_fresh = false;
-            self.refresh();
+            self.return_to_backup();
         }
         Ok(false)
     }
@@ -254,9 +252,7 @@ impl World {
             return Ok(false);
         }
         if self.state.work.steps != steps + 1 {
-            self.state.copy_from(&self.ws.backup);
-            self.is_fresh = false;
-            self.refresh();
+            self.return_to_backup();
             return Ok(false);
         }
         for index in 0..instants.len() {
@@ -267,6 +263,13 @@ impl World {
         }
         self.update();
         Ok(true)
+    }
+
+    /// Back to where the last step began.
+    pub(crate) fn return_to_backup(&mut self) {
+        self.state.copy_from(&self.ws.backup);
+        self.is_fresh = false;
+        self.refresh();
     }
 
     /// Kinematics and twists of the present state.
@@ -399,9 +402,7 @@ impl World {
                     let time = self.state.time;
                     let body = self.model.body_name(vehicle.body0 + local);
                     let quantity = format!("speed {size:.3e}");
-                    self.state.copy_from(&self.ws.backup);
-                    self.is_fresh = false;
-                    self.refresh();
+                    self.return_to_backup();
                     return Err(StepError::Diverged { time, body, quantity, last_good: self.state.time });
                 }
             }
