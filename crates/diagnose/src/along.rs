@@ -15,7 +15,7 @@ use crate::lost;
 use crate::pace::{self, Discretisation};
 use crate::plant::Plant;
 use crate::replay::Span;
-use crate::select::search::{Found, NEXT_TO_NOTHING, Remainder, Tried, hypotheses_of, remainder, search, to_the_end};
+use crate::select::search::{Found, NEXT_TO_NOTHING, Remainder, hypotheses_of, remainder, search, to_the_end};
 use crate::tell::near_the_best;
 use record::Role;
 use scenario::spec::Tolerance;
@@ -229,22 +229,21 @@ pub(crate) fn as_fit(stage: &Stage<'_>, fitted: &Fitted, segments: Vec<Segment>)
 /// What stands for a finding in other sets that are near the best one by the criterion: title of the finding, and its rival. A set that has all of the
 /// best one's findings and more stands for none of them. Where a richer law of the same kind has a finding's place that is in the set as well.
 pub(crate) fn rivals(course: &Course) -> Vec<(String, Rival)> {
-    let best = &course.found.best.set;
-    let tried = &course.found.tried;
+    let Found { best, criteria: [nominal, own], tried, equals, .. } = &course.found;
+    let best = &best.set;
+    let left = course.left[1];
+    let near = near_the_best(nominal - own, if left.is_noise() { 0.0 } else { left.rise });
     let has_all = |set: &EffectSet| best.findings().all(|(h, _)| set.has_finding(h));
-    let is_best = |set: &EffectSet| has_all(set) && set.findings().all(|(h, _)| best.has_finding(h));
-    let own = tried.iter().filter(|t| is_best(&t.set)).map(|t| t.criteria[1]).reduce(f64::min);
-    let (Some(own), Some(nominal)) = (own, tried.first().map(|t| t.criteria[0])) else { return Vec::new() };
-    let is_near = |t: &&Tried| t.criteria[1] - own < near_the_best(nominal - own);
+    let all = tried.iter().map(|t| (&t.set, t.criteria[1])).chain(equals.iter().map(|(set, c)| (set, *c)));
     let mut found: Vec<(String, Rival)> = Vec::new();
-    for other in tried.iter().filter(|t| !has_all(&t.set)).filter(is_near) {
+    for (other, criterion) in all.filter(|(set, criterion)| !has_all(set) && (criterion - own).abs() < near) {
         let is_richer = |(r, x): &(Hypothesis, Vec<f64>), h: &Hypothesis| {
             r.place == h.place && r.plainer(x).iter().any(|plain| plain.name == h.name)
         };
-        let has = |h: &Hypothesis| other.set.has_finding(h) || other.set.findings().any(|m| is_richer(m, h));
+        let has = |h: &Hypothesis| other.has_finding(h) || other.findings().any(|m| is_richer(m, h));
         for (h, _) in best.findings().filter(|(h, _)| !has(h)) {
-            for (r, _) in other.set.findings().filter(|(r, _)| !best.has_finding(r)) {
-                let score_gap = other.criteria[1] - own;
+            for (r, _) in other.findings().filter(|(r, _)| !best.has_finding(r)) {
+                let score_gap = criterion - own;
                 let rival = Rival { name: r.name.to_owned(), place: r.place.clone(), score_gap };
                 match found
                     .iter_mut()
@@ -256,6 +255,7 @@ pub(crate) fn rivals(course: &Course) -> Vec<(String, Rival)> {
             }
         }
     }
+    found.sort_by(|a, b| a.1.score_gap.total_cmp(&b.1.score_gap));
     found
 }
 

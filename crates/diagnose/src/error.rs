@@ -24,6 +24,9 @@ pub enum DiagnoseError {
     /// The recording and the scenario do not belong together.
     #[error("the recording cannot belong to this scenario: {0}")]
     Foreign(String),
+    /// There is too little in the recording.
+    #[error("the recording cannot be diagnosed: {0}")]
+    TooLittle(String),
     /// A replay left the range of numbers.
     #[error("run {file}: {what}")]
     Replay {

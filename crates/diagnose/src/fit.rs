@@ -314,7 +314,7 @@ fn descend(
 const LONGEST: f64 = 0.05;
 const SHORTER: f64 = 1e-3;
 
-/// A model for each fitted coordinate, moved by its step.
+/// A model for each fitted coordinate, moved by its step; as it is where that leads nowhere out of what a body can be: such a number shows nothing.
 pub fn vary(
     plant: &Plant,
     set: &EffectSet,
@@ -333,7 +333,9 @@ pub fn vary(
             Ok(Variation { built: plant.build(&moved.effects())?, step, is_tolerated })
         };
         // At the edge of what can be built the other way is open, or a shorter one.
-        vary_by(step).or_else(|_| vary_by(-step)).or_else(|_| vary_by(SHORTER * step))
+        let ways = [step, -step, SHORTER * step, -SHORTER * step, 0.0];
+        let moved = |by: &f64| vary_by(*by).map(|v| Variation { step: if *by == 0.0 { step } else { *by }, ..v });
+        ways[1..].iter().fold(moved(&ways[0]), |found, by| found.or_else(|_: DiagnoseError| moved(by)))
     };
     slots.iter().zip(sizes).map(vary_one).collect()
 }

@@ -117,7 +117,7 @@ fn flown(
     }
     let segments = cut(built, &tapes, Some(window), |_| true);
     let mut flying = Stage { tapes: &tapes, ..*stage };
-    let pace = pace::choose(&flying, built, &segments, free.scenario.integrator.step_s).pace;
+    let pace = pace::choose(&flying, (built, &[]), &segments, free.scenario.integrator.step_s).pace;
     flying.pace = pace;
     let problem = along::problem(&flying, free, own, Role::Fit);
     let nominal = problem.begin()?;

@@ -66,6 +66,7 @@ pub mod tape;
 mod tell;
 mod together;
 mod uncertainty;
+mod unheard;
 mod vocabulary;
 pub mod words;
 pub mod work;

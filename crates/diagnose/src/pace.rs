@@ -3,7 +3,11 @@
 //! The step is halved, from the longest stretch that no sample and no command cuts (where parts touch, from the scenario's own step), until a replay and one of half its step differ by less
 //! than a small part of the noise (of what the model misses there, where nothing touches) over every window. Steps of free flight are chosen alike, with those in contact held.
 
+use crate::catalogue;
+use crate::effect_set::EffectSet;
+use crate::facts::Facts;
 use crate::fit::Fit;
+use crate::hypothesis::{Column, Hypothesis, Tier};
 use crate::linear::{Segment, Stage};
 use crate::number::short;
 use crate::plant::{Built, Plant};
@@ -24,6 +28,8 @@ pub(crate) const WHOLE_TOLERANCE: f64 = 0.1;
 /// The same where numbers are fitted to the end, in standard errors: steps that move n scalars by ε each may move a number by ε √n of them.
 const BIAS: f64 = 3.0;
 const FINAL_TOLERANCE: [f64; 2] = [0.01, WHOLE_TOLERANCE];
+/// Share of what a number of a contact does that a halved step may move.
+const ALIKE: f64 = 0.1;
 /// Share of the difference that a halved step leaves at most where steps of some order converge.
 const FADING: f64 = 0.7;
 /// Halvings that whole runs may ask for.
@@ -58,15 +64,23 @@ impl Discretisation {
     }
 }
 
-/// The coarsest steps whose halves tell the same; `own` is the step below which half and quarter are the last that are tried, s.
-pub fn choose(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> Discretisation {
+/// The coarsest steps whose halves tell the same; `own` is the step below which half and quarter are the last that are tried, s. Where parts touch, steps
+/// longer than that tell the same of what the `varied` models differ by, too: a step may follow a touch and hide from its derivative how stiff it is.
+pub fn choose(
+    stage: &Stage<'_>,
+    (built, varied): (&Built, &[Built]),
+    segments: &[Segment],
+    own: f64,
+) -> Discretisation {
     let every = segments.len().div_ceil(WINDOWS).max(1);
     let some: Vec<&Segment> = segments.iter().skip(every / 2).step_by(every).collect();
-    // Derivatives are taken in steps of twice the length and more, which a bristle has to bear as well: what the scenario resolves its contacts by bounds them.
-    let longest = match touches(built) {
+    let mut longest = match touches(built) && varied.is_empty() {
         true => own,
         false => stage.tapes.iter().map(longest_stretch).fold(own, f64::max),
     };
+    if touches(built) {
+        longest = telling(stage, (built, varied), &some, [longest, own]);
+    }
     let finest = own * 0.5f64.powi(FINER as i32);
     let (found, mut worst) = halved(stage, built, &some, Pace::even(longest), (TOLERANCE, finest));
     let step = found.step;
@@ -146,6 +160,36 @@ pub(crate) fn tolerance_of(count: usize) -> f64 {
     (BIAS / (count.max(1) as f64).sqrt()).clamp(least, most)
 }
 
+/// The longest step, halved from one down to another, that tells by how much some models differ from one as half of it does.
+fn telling(
+    stage: &Stage<'_>,
+    (built, varied): (&Built, &[Built]),
+    segments: &[&Segment],
+    [mut longest, own]: [f64; 2],
+) -> f64 {
+    let replayed = |step: f64| {
+        let of = |built: &Built| Replayed::new(stage, built, segments, Pace::even(step)).residuals;
+        let base = of(built);
+        let less = |r: &[DVector<f64>]| r.iter().zip(&base).map(|(r, b)| r - b).collect::<Vec<_>>();
+        varied.iter().map(|v| less(&of(v))).collect::<Vec<_>>()
+    };
+    let share = |(coarse, fine): (&Vec<DVector<f64>>, &Vec<DVector<f64>>)| {
+        let differs: f64 = coarse.iter().zip(fine).map(|(a, b)| (a - b).norm_squared()).sum();
+        let all: f64 = fine.iter().map(DVector::norm_squared).sum();
+        if all > 0.0 { (differs / all).sqrt() } else { 0.0 }
+    };
+    let mut now = replayed(longest);
+    while longest > own {
+        let finer = replayed(0.5 * longest);
+        let worst = now.iter().zip(&finer).map(share).fold(0.0, f64::max);
+        if worst <= ALIKE {
+            break;
+        }
+        (longest, now) = (0.5 * longest, finer);
+    }
+    longest.max(own)
+}
+
 /// Steps halved until halving them once more moves nothing by more than a tolerance, or reaches the finest; and what that moves.
 fn halved(
     stage: &Stage<'_>,
@@ -207,6 +251,23 @@ impl<'a> Replayed<'a> {
         let pairs = self.residuals.iter().zip(&finer.residuals);
         self.segments.iter().zip(pairs).map(of).fold(0.0, f64::max)
     }
+}
+
+/// Models with each nominal number of a contact as its derivatives are taken with; none where nothing touches.
+pub(crate) fn varied(plant: &Plant, built: &Built, tapes: &[Tape]) -> Vec<Built> {
+    if !touches(built) {
+        return Vec::new();
+    }
+    let all = catalogue::hypotheses(&Facts::new(built, tapes));
+    let of = |h: &Hypothesis| {
+        let beside = |c: &Column| -> Option<Built> {
+            let x: Vec<f64> = c.base.iter().zip(&c.direction).map(|(b, d)| b + c.step * d).collect();
+            plant.build(&EffectSet::default().with(h, &h.clamped(&x)).effects()).ok()
+        };
+        let columns = h.screens.iter().flat_map(|s| &s.columns).filter(|c| !c.secant);
+        columns.filter_map(beside).collect::<Vec<_>>()
+    };
+    all.iter().filter(|h| h.tier == Tier::Nominal && h.place.starts_with("contact:")).flat_map(of).collect()
 }
 
 /// Whether any parts of a model may touch.

@@ -37,8 +37,8 @@ pub struct Built {
     pub drives: Vec<DriveChannel>,
     /// Elastic mounts.
     pub mounts: Vec<Mount>,
-    /// Longest delay of an actuator, s.
-    pub delay: f64,
+    /// Delays of actuators, s, in the order of the effects.
+    pub delays: Vec<f64>,
 }
 
 /// Commands of a joint by the end of their channels' names.
@@ -143,7 +143,7 @@ impl Plant {
             EffectKind::Line(LineEffect { law: LineLaw::Delay(delay), .. }) => Some(*delay),
             _ => None,
         };
-        let delay = model.effects().iter().filter_map(|effect| delay(&effect.kind)).fold(0.0, f64::max);
+        let delays = model.effects().iter().filter_map(|effect| delay(&effect.kind)).collect();
         let sensor = |channel: &String| {
             let gauge = Gauge::resolve(&scenario, &model, channel).ok()?;
             Some((channel.clone(), gauge, SensorModel::late(&scenario, &model, channel)))
@@ -154,7 +154,7 @@ impl Plant {
             sensors: self.channels.iter().filter_map(sensor).collect(),
             mounts: Mount::all(&model),
             drives: mission.drives,
-            delay,
+            delays,
             model,
         })
     }
@@ -178,6 +178,11 @@ fn drive_path(
 }
 
 impl Built {
+    /// The longest delay of an actuator, s.
+    pub fn longest_delay(&self) -> f64 {
+        self.delays.iter().copied().fold(0.0, f64::max)
+    }
+
     /// The model on a run's drive paths.
     pub fn model_of(&self, run: usize) -> &Arc<Model> {
         self.by_run.get(run).unwrap_or(&self.model)

@@ -412,10 +412,11 @@ impl<'a> Replay<'a> {
 
 /// Late actuators still follow commands from before the span.
 fn hear_the_past(built: &Built, tape: &Tape, from: f64, world: &mut World) {
-    if built.delay == 0.0 {
+    let delay = built.longest_delay();
+    if delay == 0.0 {
         return;
     }
-    let begin = from - 2.0 * built.delay;
+    let begin = from - 2.0 * delay;
     let first = tape.ticks.partition_point(|t| *t < begin).saturating_sub(1);
     let heard = |tick: &f64| {
         Feed::new(tape, *tick).apply(world);

@@ -37,6 +37,7 @@ use crate::stretches::{cut, joined};
 use crate::tape::{Tape, load};
 use crate::tell;
 use crate::uncertainty::{self, Uncertainty};
+use crate::unheard;
 use crate::work::{Until, Watch, Work};
 use rayon::prelude::*;
 use record::{RecordingSet, Role, Severity};
@@ -199,7 +200,9 @@ fn prepare<'w>(
     let own = scenario.integrator;
     let mut plant = Plant::new(scenario);
     let (mut tapes, mut built) = load(&mut plant, set)?;
+    unheard::refuse_too_little(&tapes)?;
     let mut said: Vec<String> = limits::said_of_efforts(set).into_iter().collect();
+    said.extend(unheard::said_of_commands(&built, &tapes));
     for passed in [limits::unstopped, limits::raised] {
         let Some((scenario, words)) = passed(&plant, &built, &tapes) else { continue };
         said.push(words);
@@ -251,7 +254,8 @@ fn diagnose_in(
     let verdict = verdict(&judgement, &found, (follows, helps));
     let uncertainty = how_sure(&stage, &plant, &found, verdict)?;
     rivals.retain(|(title, _)| found.set.findings().any(|(h, _)| h.title() == *title));
-    rivals.extend(tell::rivals_by_round(&attempts, &found.set));
+    let remains = if found.is_significant() { found.excess() } else { 0.0 };
+    rivals.extend(tell::rivals_by_round(&attempts, &found.set, remains));
     clock.stage("write", 1.0);
     let findings = Findings {
         title: set.title.clone(),
@@ -451,7 +455,8 @@ fn begin(
     let stage = Stage { tapes: &thinned, pace, work: clock.work, doubt: noise::STATED, hears: None };
     clock.stage("choose the step", 0.03);
     let segments = cut(built, &thinned, Some(window), |t| t.role == Role::Fit);
-    let guessed = chosen(&stage, built, &segments, own);
+    let varied = pace::varied(plant, built, &thinned);
+    let guessed = chosen(&stage, (built, &varied), &segments, own);
     clock.stage("fit the starts of the nominal model", 0.05);
     let mut stage = Stage { pace: guessed.pace, ..stage };
     // Along whole runs states through touches come from what went before.
@@ -461,7 +466,7 @@ fn begin(
     // A window whose start was guessed badly says little of the steps that it needs.
     let discretisation = match pace::touches(&nominal.built) {
         true => guessed,
-        false => chosen(&stage, &nominal.built, &nominal.segments, own),
+        false => chosen(&stage, (&nominal.built, &[]), &nominal.segments, own),
     };
     stage.pace = discretisation.pace;
     if discretisation.pace.step < guessed.pace.step {
@@ -482,8 +487,8 @@ fn begin(
 }
 
 /// Steps for a model in some windows, said.
-fn chosen(stage: &Stage<'_>, built: &Built, segments: &[Segment], own: f64) -> Discretisation {
-    let found = pace::choose(stage, built, segments, own);
+fn chosen(stage: &Stage<'_>, models: (&Built, &[Built]), segments: &[Segment], own: f64) -> Discretisation {
+    let found = pace::choose(stage, models, segments, own);
     stage.work.watch.step(&found.words());
     found
 }

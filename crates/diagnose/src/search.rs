@@ -226,7 +226,7 @@ fn refine(stage: &mut Stage<'_>, standing: &Standing) -> bool {
 /// Steps that a model needs in some windows, or the present ones where these are finer.
 pub(crate) fn no_coarser(stage: &Stage<'_>, built: &Built, segments: &[Segment]) -> Pace {
     let now = stage.pace;
-    let found = pace::choose(stage, built, segments, now.step).pace;
+    let found = pace::choose(stage, (built, &[]), segments, now.step).pace;
     let step = found.step.min(now.step);
     Pace { step, free: found.free.min(now.free).max(step), midpoint: found.midpoint && now.midpoint }
 }

@@ -45,7 +45,7 @@ pub fn synthesise(
     let own = plant.scenario.integrator.step_s;
     let work = Work::new(&(), 1.0);
     let stage = Stage { tapes: &tapes, pace: Pace::even(own), work: &work, doubt: noise::STATED, hears: None };
-    let found = pace::choose(&stage, &built, &cut(&built, &tapes, None, |_| true), own).pace;
+    let found = pace::choose(&stage, (&built, &[]), &cut(&built, &tapes, None, |_| true), own).pace;
     let pace = Pace { step: found.step / FINER, free: found.free / FINER, ..found };
     let of_run = |(recorded, tape): (&RecordedRun, &Tape)| -> Result<RecordedRun, DiagnoseError> {
         let mut values: Vec<Vec<Value>> = tape.readings.iter().map(|r| r.values.clone()).collect();

@@ -199,8 +199,8 @@ fn slides(built: &crate::plant::Built, place: &str) -> bool {
 }
 
 /// Hypotheses whose refit came near the chosen one's in the round in which it was chosen, by the title of that; near that of the whole set where
-/// several were chosen together.
-pub(crate) fn rivals_by_round(attempts: &[Attempt], set: &EffectSet) -> Vec<(String, Rival)> {
+/// several were chosen together. `left`: what the set leaves beyond noise.
+pub(crate) fn rivals_by_round(attempts: &[Attempt], set: &EffectSet, left: f64) -> Vec<(String, Rival)> {
     let of = |chosen: &Member| -> Vec<(String, Rival)> {
         let is_chosen = |a: &Attempt| a.kept && a.name == chosen.name && a.place == chosen.place;
         let Some(own) = attempts.iter().find(|a| is_chosen(a)) else { return Vec::new() };
@@ -208,17 +208,19 @@ pub(crate) fn rivals_by_round(attempts: &[Attempt], set: &EffectSet) -> Vec<(Str
         let is_found = |a: &Attempt| set.findings().any(|(h, _)| h.title() == a.title());
         let same_round = attempts.iter().filter(|a| a.round == own.round && !is_found(a));
         // One that is better by far was told in other windows than the chosen one in the end.
-        let near =
-            same_round.filter_map(|a| a.gain.map(|g| (a, gain - g))).filter(|(_, gap)| gap.abs() < near_the_best(gain));
+        let near = same_round
+            .filter_map(|a| a.gain.map(|g| (a, gain - g)))
+            .filter(|(_, gap)| gap.abs() < near_the_best(gain, left));
         near.map(|(a, score_gap)| (chosen.title(), Rival { name: a.name.clone(), place: a.place.clone(), score_gap }))
             .collect()
     };
     set.findings().flat_map(|(h, _)| of(h)).collect()
 }
 
-/// Difference of the information criterion up to which another explanation is told, of one that gains so much.
-pub(crate) fn near_the_best(gain: f64) -> f64 {
-    (0.05 * gain).max(10.0)
+/// Difference of the information criterion up to which another explanation is told, of one that gains so much and leaves so much beyond noise: what is left
+/// may stand for the wrong one of two as well as for the right one, where noise alone is left ten decide (Kass and Raftery 1995).
+pub(crate) fn near_the_best(gain: f64, left: f64) -> f64 {
+    (0.05 * gain.min(left)).max(10.0)
 }
 
 fn located(findings: &Findings, stage: &Stage<'_>, features: &Features) -> Vec<LocatedPlace> {

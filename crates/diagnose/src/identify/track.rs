@@ -119,7 +119,7 @@ impl Track {
         let (from, to) = tape.span;
         // Between samples: what a small delay makes of the first sample of an interval is not told from where that begins.
         let most = tape.readings.iter().map(|r| r.times.len()).max().unwrap_or(2).max(2);
-        let aside = ASIDE * (to - from) / (most - 1) as f64;
+        let aside = ASIDE * (to - from) / (most - 1).max(count) as f64;
         let knot = |i: usize| from + (to - from) * i as f64 / count as f64;
         let instants: Vec<f64> =
             (0..=count).map(|i| if i == 0 || i == count { knot(i) } else { knot(i) - aside }).collect();
@@ -260,10 +260,11 @@ impl Frame<'_> {
         columns.filter(|c| !c.is_empty()).map(|c| DMatrix::from_columns(&c))
     }
 
-    /// Whether both ends of a difference quotient are replayed alike at the coarser clock: else both are as they are judged.
+    /// Whether both ends of a difference quotient are replayed alike at the coarser clock: else both are as they are judged. By how much commands are late is
+    /// less than a cell of theirs, of which only the mean is heard.
     fn is_coarse_with(&self, variation: &Variation) -> bool {
         let [here, there] = [self.built, &variation.built].map(|b| (!holds(b)).then(|| b.model.is_smooth()));
-        here.is_some() && here == there
+        here.is_some() && here == there && self.built.delays == variation.built.delays
     }
 
     /// Columns of a number along a run: ∂r/∂θ and ∂end/∂θ of each interval.

@@ -6,7 +6,7 @@
 //! dead time and one that lags differ by little, and a payload beside them tips the scales. At the end each is fitted in the other's place.
 
 use super::kin::are_kin;
-use super::search::{FAR, GLANCE, LOOK, Tried, criterion, to_the_end};
+use super::search::{FAR, GLANCE, LOOK, Tried, criterion, remainder, to_the_end};
 use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
 use crate::hypothesis::Hypothesis;
@@ -14,37 +14,64 @@ use crate::identify::fit::{Fitted, Problem};
 use crate::screen::Score;
 use crate::work::Until;
 
-/// A fit with members as what was tried at their places beside fewer, where that is better by the criterion now.
+/// A fit with members as what was tried at their places beside fewer, where that is better by the criterion now; and the sets that were held against it.
 pub(super) fn exchanged(
     problem: &Problem<'_>,
     mut now: Fitted,
     (tried, shown): (&[Tried], &[(Hypothesis, Score)]),
     many: usize,
-) -> Result<Fitted, DiagnoseError> {
+) -> Result<(Fitted, Vec<(EffectSet, f64)>), DiagnoseError> {
     let all: Vec<Hypothesis> = now.set.findings().map(|(h, _)| h.clone()).collect();
+    let mut stood = Vec::new();
     for member in &all {
-        // One alone was held against all others at its place as it is.
+        // One alone was held against what was tried at its place as it is.
         let here = if all.len() > 1 { equals(member, &now.set, tried) } else { Vec::new() };
-        let titles: Vec<String> = here.iter().map(|(h, _)| h.title()).collect();
-        let elsewhere = promised(member, &now.set, shown).into_iter().filter(|(h, _)| !titles.contains(&h.title()));
-        for (equal, x) in here.iter().cloned().chain(elsewhere) {
+        let elsewhere = promised(member, &now.set, shown);
+        let overlooked =
+            if remainder(problem, &now)?.is_noise() { Vec::new() } else { untried(member, &now.set, (tried, shown)) };
+        let mut titles = Vec::new();
+        let mut candidates: Vec<_> = here.into_iter().chain(elsewhere).chain(overlooked).collect();
+        candidates.retain(|(h, _)| {
+            !titles.contains(&h.title()) && {
+                titles.push(h.title());
+                true
+            }
+        });
+        let mut better: Option<Fitted> = None;
+        for (equal, x) in &candidates {
             if problem.stage.work.is_spent(Until::Prune) {
-                return Ok(now);
+                break;
             }
-            let Some(at) = now.set.members.iter().position(|m| m.0.title() == member.title()) else { break };
-            let Ok(glance) = problem.fit(&now, now.set.without(at).with(&equal, &x), GLANCE) else { continue };
-            if criterion(&glance, many) - criterion(&now, many) > FAR {
-                continue;
-            }
-            let Ok(look) = problem.fit(&glance, glance.set.clone(), LOOK) else { continue };
-            let costs = criterion(&look, many) - criterion(&now, many);
+            let Some(look) = in_its_place(problem, &now, (member, many), (equal, x)) else { continue };
+            let own = criterion(&look, many);
+            let costs = own - criterion(&now, many);
             problem.stage.work.watch.step(&format!("  {} in the place of its equal costs {costs:.1}", equal.title()));
-            if costs < 0.0 {
-                now = to_the_end(problem, look);
+            stood.push((look.set.clone(), own));
+            if own < better.as_ref().map_or(criterion(&now, many), |b| criterion(b, many)) {
+                better = Some(look);
             }
         }
+        if let Some(better) = better {
+            stood.push((now.set.clone(), criterion(&now, many)));
+            now = to_the_end(problem, better);
+        }
     }
-    Ok(now)
+    Ok((now, stood))
+}
+
+/// A fit with another law in a member's place; none where that is out of the question.
+fn in_its_place(
+    problem: &Problem<'_>,
+    now: &Fitted,
+    (member, many): (&Hypothesis, usize),
+    (equal, x): (&Hypothesis, &[f64]),
+) -> Option<Fitted> {
+    let at = now.set.members.iter().position(|m| m.0.title() == member.title())?;
+    let glance = problem.fit(now, now.set.without(at).with(equal, x), GLANCE).ok()?;
+    if criterion(&glance, many) - criterion(now, many) > FAR {
+        return None;
+    }
+    problem.fit(&glance, glance.set.clone(), LOOK).ok()
 }
 
 /// Share of the gain of the best law at a place from which on another one there is its equal.
@@ -67,6 +94,29 @@ fn promised(member: &Hypothesis, set: &EffectSet, shown: &[(Hypothesis, Score)])
 
 /// How many of them are fitted.
 const PROMISED: usize = 3;
+
+/// What promises most at the place of a member and was not fitted there alone: where more than noise is left, a promise that fell short may have been a
+/// column's fault.
+fn untried(
+    member: &Hypothesis,
+    set: &EffectSet,
+    (tried, shown): (&[Tried], &[(Hypothesis, Score)]),
+) -> Vec<(Hypothesis, Vec<f64>)> {
+    let is_tried = |h: &Hypothesis| tried.iter().any(|t| t.added == [h.title()]);
+    let mut all: Vec<(Hypothesis, Vec<f64>)> = Vec::new();
+    for (h, score) in shown.iter().filter(|(h, s)| h.place == member.place && s.score > 0.0 && !is_tried(h)) {
+        let mut known = set.members.iter().map(|m| &m.0).filter(|m| m.title() != member.title());
+        let is_new = h.title() != member.title() && all.iter().all(|(a, _)| a.title() != h.title());
+        if is_new && !known.any(|k| k.title() == h.title() || are_kin(h, k)) {
+            all.push((h.clone(), score.start.clone()));
+        }
+    }
+    all.truncate(UNTRIED);
+    all
+}
+
+/// How many of them are fitted.
+const UNTRIED: usize = 2;
 
 /// What was tried alone at the place of a member and did as much as any there, as it was last found; without what is in the set.
 fn equals(member: &Hypothesis, set: &EffectSet, tried: &[Tried]) -> Vec<(Hypothesis, Vec<f64>)> {

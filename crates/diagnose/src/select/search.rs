@@ -31,8 +31,12 @@ pub struct Found {
     pub nominal: Fitted,
     /// The best set.
     pub best: Fitted,
+    /// Criterion of both.
+    pub criteria: [f64; 2],
     /// All that was fitted in full simulation, in order.
     pub tried: Vec<Tried>,
+    /// Sets with another law in the place of one of the best set's, and their criterion.
+    pub equals: Vec<(EffectSet, f64)>,
     /// What the first linear model said of every hypothesis.
     pub shown: Vec<(Hypothesis, Score)>,
     /// What the nominal model leaves beyond noise, −2 log likelihood.
@@ -105,7 +109,9 @@ pub fn search(
     let first = hypotheses(&nominal)?;
     // What a nominal model leaves that is far from what the runs did is no measure of what is left beside another one.
     let (many, all) = (first.len(), problem.power(begun.as_ref().unwrap_or(&nominal)));
-    let found = Found { nominal: nominal.clone(), best: nominal, tried: Vec::new(), shown: Vec::new(), left: 0.0 };
+    let best = nominal.clone();
+    let (tried, equals, shown) = (Vec::new(), Vec::new(), Vec::new());
+    let found = Found { nominal, best, criteria: [f64::NAN; 2], tried, equals, shown, left: 0.0 };
     let (known, refused) = (first.clone(), Vec::new());
     let ways = Vec::new();
     let mut search = Search { problem, hypotheses, many, all, numbers, known, refused, ways, smaller: None, found };
@@ -132,10 +138,11 @@ pub fn search(
     let free = if free.score < before { to_the_end(problem, free) } else { free };
     let plain = simplified(problem, free, &known, (many, all))?;
     let titles = plain.set.titles();
-    found.best = exchanged(problem, plain, (&found.tried, &found.shown), many)?;
+    (found.best, found.equals) = exchanged(problem, plain, (&found.tried, &found.shown), many)?;
     if found.best.set.titles() != titles {
         found.best = simplified(problem, found.best, &known, (many, all))?;
     }
+    found.criteria = [&found.nominal, &found.best].map(|fit| criterion(fit, many));
     Ok(found)
 }
 

@@ -132,12 +132,14 @@ pub fn spikes(parts: &[&Series], noise: f64) -> Vec<Spike> {
     }
     let is_force = ChannelName::parse(&first.channel).is_some_and(|name| name.quantity.is_force());
     let by_noise = if is_force { 0.0 } else { BY_NOISE * parts.len() as f64 * variance };
-    let places = 4..first.len() - 4;
+    // The first and last two have no cubic; of the next ones what is left of their neighbourhood tells.
+    let inner = 2..first.len() - 2;
+    let places = inner.clone();
     let is_far = |i: &usize| parts.iter().map(|s| cubic(&s.values, *i).powi(2)).sum::<f64>() > FAR * FAR * variance;
     let spike_at = |i: usize, other: Option<usize>| {
         let (mut size, mut all, mut left) = (0.0, 0.0, 0.0);
         for part in parts {
-            let told = told_by(|k| cubic(&part.values, k), i, other);
+            let told = told_by(|k| inner.contains(&k).then(|| cubic(&part.values, k)), i, other);
             size = if parts.len() == 1 { told.size } else { told.size.hypot(size) };
             (all, left) = (all + told.squares, left + told.left);
         }
@@ -172,21 +174,20 @@ struct Told {
     left: f64,
 }
 
-/// Least squares of a lone reading at `i`, and at another place where one is given, in differences from cubics.
-fn told_by(difference: impl Fn(usize) -> f64, i: usize, other: Option<usize>) -> Told {
+/// Least squares of a lone reading at `i`, and at another place where one is given, in differences from cubics where there are some.
+fn told_by(difference: impl Fn(usize) -> Option<f64>, i: usize, other: Option<usize>) -> Told {
     let (low, high) = (i.min(other.unwrap_or(i)) - 2, i.max(other.unwrap_or(i)) + 2);
     let lone = |at: usize, k: usize| (k + 2).checked_sub(at).and_then(|n| LONE.get(n)).copied().unwrap_or(0.0);
-    let (mut aa, mut ab, mut ar, mut br, mut rr) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for k in low..=high {
-        let (r, a, b) = (difference(k), lone(i, k), other.map_or(0.0, |j| lone(j, k)));
-        (aa, ab, ar, br, rr) = (aa + a * a, ab + a * b, ar + a * r, br + b * r, rr + r * r);
+    let (mut aa, mut ab, mut bb, mut ar, mut br, mut rr) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for (k, r) in (low..=high).filter_map(|k| Some((k, difference(k)?))) {
+        let (a, b) = (lone(i, k), other.map_or(0.0, |j| lone(j, k)));
+        (aa, ab, bb, ar, br, rr) = (aa + a * a, ab + a * b, bb + b * b, ar + a * r, br + b * r, rr + r * r);
     }
     if other.is_none() {
         return Told { size: ar / aa, squares: rr, left: rr - ar * ar / aa };
     }
-    // Both have the same norm.
-    let determinant = aa * aa - ab * ab;
-    let (x, y) = ((aa * ar - ab * br) / determinant, (aa * br - ab * ar) / determinant);
+    let determinant = aa * bb - ab * ab;
+    let (x, y) = ((bb * ar - ab * br) / determinant, (aa * br - ab * ar) / determinant);
     Told { size: x, squares: rr, left: rr - x * ar - y * br }
 }
 

@@ -29,12 +29,13 @@ pub static ACTUATOR_DELAY: EffectDef = EffectDef {
     corrects: Corrects::Nothing,
 };
 
-/// Delay by which it is screened, s.
-const LATE: f64 = 4e-3;
+/// Delays by which it is screened, s: where commands are held for longer than that, each moves another part of what they do.
+const LATE: [f64; 2] = [4e-3, 1.2e-2];
 
 fn candidates(actuator: &ActuatorFact) -> Vec<Candidate> {
     let coordinates = vec![Coordinate::level("delay", 0.0).within([0.0, 0.5])];
-    let mut late = Candidate::new(actuator.place.clone(), coordinates).screened_at("", &[vec![LATE]]);
+    let candidate = Candidate::new(actuator.place.clone(), coordinates);
+    let mut late = LATE.iter().fold(candidate, |all, late| all.screened_at("", &[vec![*late]]));
     late.is_expensive = actuator.largest_command == 0.0;
     vec![late]
 }

@@ -22,7 +22,7 @@ pub static ACTUATOR_SATURATION: EffectDef = EffectDef {
         penalty: None,
         nested: None,
         start: Start::Mean,
-        minima: Minima::One,
+        minima: Minima::Several,
         concerns: Concerns::Motion,
     },
     shown: Shown::Each,
@@ -39,6 +39,7 @@ fn candidates(actuator: &ActuatorFact) -> Vec<Candidate> {
     let at = |share: f64| vec![vec![(share * largest).ln()]];
     let limited = Candidate::new(actuator.place.clone(), coordinates)
         .screened_at("limit 0.9 of the largest command", &at(0.9))
-        .screened_at("limit 0.7 of the largest command", &at(0.7));
+        .screened_at("limit 0.7 of the largest command", &at(0.7))
+        .screened_at("limit 0.4 of the largest command", &at(0.4));
     vec![limited]
 }

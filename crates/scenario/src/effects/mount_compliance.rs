@@ -34,7 +34,7 @@ pub static MOUNT_COMPLIANCE: EffectDef = EffectDef {
         penalty: None,
         nested: None,
         start: Start::LogInverse,
-        minima: Minima::One,
+        minima: Minima::Several,
         concerns: Concerns::Motion,
     },
     shown: Shown::Each,
@@ -53,15 +53,18 @@ fn candidates(contact: &ContactFact) -> Vec<Candidate> {
     }
     let mass = contact.mass;
     let m = TIP_MASS.min(0.02 * mass);
-    let of = |f: f64| {
-        let k = (TAU * f).powi(2) * mass;
-        let coordinates = vec![
-            Coordinate::log("k", k, [1e-2 * k, 1e3 * k]),
-            Coordinate::level("d", 0.05 * (k * mass).sqrt()),
-            Coordinate::log("m", m, [1e-4 * mass, 0.3 * mass]),
-        ];
+    let of = |f: f64| (TAU * f).powi(2) * mass;
+    let [soft, stiff] = [of(FREQUENCIES[0]), of(FREQUENCIES[FREQUENCIES.len() - 1])];
+    let usual = (soft * stiff).sqrt();
+    let coordinates = vec![
+        Coordinate::log("k", usual, [1e-2 * soft, 1e3 * stiff]),
+        Coordinate::level("d", 0.05 * (usual * mass).sqrt()),
+        Coordinate::log("m", m, [1e-4 * mass, 0.3 * mass]),
+    ];
+    let screened = |mount: Candidate, f: &f64| {
+        let k = of(*f);
         let point = |ratio: f64| vec![k.ln(), ratio * (k * mass).sqrt(), m.ln()];
-        Candidate::new(contact.place(), coordinates).screened_at(&format!("k = {k:.2e}"), &[point(0.02), point(0.1)])
+        mount.screened_at(&format!("k = {k:.2e}"), &[point(0.02), point(0.1)])
     };
-    FREQUENCIES.map(of).into()
+    vec![FREQUENCIES.iter().fold(Candidate::new(contact.place(), coordinates), screened)]
 }
