@@ -3,12 +3,14 @@
 //! How long an unknown force stays what it is was chosen by what the nominal model misses. What a nearly right law leaves comes and goes elsewhere, in
 //! short bursts, and intervals that are not followed cost more than all that it explains brings.
 
-use super::search::{LOOK, criterion};
+use super::kin::are_kin;
+use super::search::{FAR, LOOK, criterion, to_the_end};
 use crate::effect_set::EffectSet;
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem};
 use crate::parsimony::plainer;
 use crate::standing::told;
+use scenario::effects::candidate::Coordinate;
 
 /// Share of the missing force that a law leaves which is so but for a detail.
 const NEARLY: f64 = 0.25;
@@ -52,29 +54,87 @@ fn closer(problem: &Problem<'_>, before: &Fitted, now: &Fitted) -> Option<(Fitte
 }
 
 /// A fit whose laws have what they hold in reserve, where it is better so: from next to what they are without, and from each end of what there is.
-pub(super) fn relaxed(problem: &Problem<'_>, mut now: Fitted, many: usize) -> Fitted {
+pub(super) fn relaxed(problem: &Problem<'_>, now: Fitted, many: usize) -> Fitted {
+    let begins = |(h, x): &Member| h.relaxed(x).into_iter().chain(h.relaxed_afar(x).into_iter().flatten()).collect();
+    with_others(problem, now, many, (&begins, false))
+}
+
+/// A fit whose laws are the richer ones of their kind, where it is better so: each begins where the plainer one stands, with what that has had to free.
+pub(super) fn enriched(problem: &Problem<'_>, now: Fitted, known: &[Hypothesis], many: usize) -> Fitted {
+    with_others(problem, now, many, (&|member| richer(member, known), true))
+}
+
+/// A fit with each of its findings as the best of what others begin in its place, where that is better by the criterion; once it has come to its end,
+/// where others come from afar.
+fn with_others(
+    problem: &Problem<'_>,
+    mut now: Fitted,
+    many: usize,
+    (begins, are_far): (&dyn Fn(&Member) -> Vec<Member>, bool),
+) -> Fitted {
     let all: Vec<String> = now.set.findings().map(|(h, _)| h.title()).collect();
     for title in all {
         let Some(at) = now.set.members.iter().position(|(h, _)| h.title() == title) else { continue };
-        let (h, x) = &now.set.members[at];
-        let begins = h.relaxed(x).into_iter().chain(h.relaxed_afar(x).into_iter().flatten());
-        let look = |(free, start): (Hypothesis, Vec<f64>)| {
-            let set = now.set.without(at).with(&free, &start);
+        let look = |(other, start): Member| {
+            let set = now.set.without(at).with(&other, &start);
             // States and forces are those of another law: they come to what this one says before its numbers move.
             let begun = problem.fit(&now, set.frozen(), LOOK).ok()?;
             let tried = problem.fit(&begun, set, LOOK).ok()?;
             let gain = criterion(&tried, many) - criterion(&now, many);
             let with = tried.set.members.last().map_or_else(String::new, |(h, x)| told(h, x));
-            problem.stage.work.watch.step(&format!("    {title} with {with}: criterion {gain:.1}"));
+            problem.stage.work.watch.step(&format!("    {} with {with}: criterion {gain:.1}", other.title()));
             Some((gain, tried))
         };
-        let best = begins.filter_map(look).min_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((_, free)) = best.filter(|(gain, _)| *gain < 0.0) {
-            now = free;
+        let best = begins(&now.set.members[at]).into_iter().filter_map(look).min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((gain, other)) = best.filter(|(gain, _)| *gain < if are_far { FAR } else { 0.0 }) else { continue };
+        let other = if are_far { to_the_end(problem, other) } else { other };
+        if gain < 0.0 || criterion(&other, many) < criterion(&now, many) {
+            now = other;
         }
     }
     now
 }
+
+/// A law and where its numbers stand.
+type Member = (Hypothesis, Vec<f64>);
+
+/// Richer laws of a member's kind, from each of their screen points: numbers that both have stand where the plainer law has them, a further level is a part
+/// of the first.
+fn richer((h, x): &Member, known: &[Hypothesis]) -> Vec<Member> {
+    let is_richer = |r: &&Hypothesis| {
+        are_kin(r, h)
+            && r.plainer(&r.neutral()).iter().any(|p| p.name == h.name)
+            && r.coordinates.len() > h.coordinates.len()
+    };
+    let begins = |r: &Hypothesis| {
+        let free = if h.reserve.is_empty() {
+            r.relaxed(&r.neutral()).map_or_else(|| r.clone(), |free| free.0)
+        } else {
+            r.clone()
+        };
+        let at = |key: &str| h.coordinates.iter().position(|own| own.key == key).map(|k| x[k]);
+        let level = r.coordinates.first().and_then(|c| at(c.key));
+        let begin = |base: &Vec<f64>| {
+            let of = |(c, base): (&Coordinate, &f64)| {
+                at(c.key).or_else(|| (*base == 0.0).then(|| level.map(|l| FURTHER * l)).flatten()).unwrap_or(*base)
+            };
+            (free.clone(), r.clamped(&r.coordinates.iter().zip(base).map(of).collect::<Vec<_>>()))
+        };
+        let points = r.screens.iter().filter_map(|s| s.columns.first()).filter(|c| !c.secant);
+        points.filter(|_| level.is_some()).map(|c| begin(&c.base)).collect::<Vec<_>>()
+    };
+    let mut seen = Vec::new();
+    let mut is_new = |r: &&Hypothesis| {
+        !seen.contains(&r.name) && {
+            seen.push(r.name);
+            true
+        }
+    };
+    known.iter().filter(is_richer).filter(&mut is_new).flat_map(begins).collect()
+}
+
+/// A further level of a richer law to begin with, as a part of the first.
+const FURTHER: f64 = 0.3;
 
 /// What a law may become by fewer numbers, and where that begins: its plainer kinds, and itself with what it held in reserve as usual. A plainer kind of a
 /// law that has had to free its reserve begins where that stands, and from each end of what there is: the richer one did with its own numbers what it does.

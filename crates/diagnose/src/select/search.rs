@@ -1,6 +1,6 @@
 //! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
 
-use super::detail::{relaxed, simpler};
+use super::detail::{enriched, relaxed, simpler};
 use super::exchange::exchanged;
 use super::gamma_quantile_over_mean;
 use super::kin::alone_of_their_kind;
@@ -134,7 +134,10 @@ pub fn search(
     known.extend(first);
     let before = now.score;
     // Where noise alone is left, nothing tells of what laws hold in reserve.
-    let free = if remainder(problem, &now)?.is_noise() { now } else { relaxed(problem, now, many) };
+    let free = match remainder(problem, &now)?.is_noise() {
+        true => now,
+        false => enriched(problem, relaxed(problem, now, many), &known, many),
+    };
     let free = if free.score < before { to_the_end(problem, free) } else { free };
     let plain = simplified(problem, free, &known, (many, all))?;
     let titles = plain.set.titles();
