@@ -8,8 +8,8 @@
 //!
 //!   s² = min over k of ⟨(Δᵏ r)²⟩ / (2k choose k),      σ ← s σ
 //!
-//! with the mean over the smaller three fifths (impacts do not count). A stated σ is believed within [`SURE`], and never left by more than
-//! [`FARTHEST`]: beyond that it is not the noise that differs.
+//! with the mean over the smaller three fifths (impacts do not count). A stated σ is believed within [`SURE`], and left by more than
+//! [`FARTHEST`] only where all that is left is white: else it is not the noise that differs.
 
 use crate::error::DiagnoseError;
 use crate::fit::Fit;
@@ -262,8 +262,9 @@ fn factor_of(Found { white, whole }: Found, is_stated: bool) -> Option<f64> {
         // Raw samples bound the noise from above.
         false => white.min(1.0),
     };
-    // More than twice the stated noise from one sample to the next is a mismatch that is fast.
-    let is_beyond = is_stated && !(1.0 / FARTHEST..=FARTHEST).contains(&s);
+    // More than twice the stated noise from one sample to the next is a mismatch that is fast, but where all that is left is white.
+    let is_white = whole <= (1.0 + SURE) * white;
+    let is_beyond = is_stated && !is_white && !(1.0 / FARTHEST..=FARTHEST).contains(&s);
     (s.is_finite() && s > 0.0 && (s - 1.0).abs() >= SURE && !is_beyond).then_some(s)
 }
 
@@ -317,12 +318,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stated_figure_is_believed_within_some_per_cent_and_never_left_by_far() {
+    fn a_stated_figure_is_believed_within_some_per_cent_and_left_by_far_only_for_white_noise() {
         let factor = |white, whole, is_stated| factor_of(Found { white, whole }, is_stated);
         assert_eq!(factor(1.02, 1.02, true), None);
         assert_eq!(factor(1.43, 1.43, true), Some(1.43));
         assert_eq!(factor(0.67, 0.67, true), Some(0.67));
-        assert_eq!([factor(5.0, 5.0, true), factor(0.3, 0.3, true), factor(f64::NAN, 1.0, true)], [None; 3]);
+        assert_eq!([factor(5.0, 6.0, true), factor(0.3, 1.0, true), factor(f64::NAN, 1.0, true)], [None; 3]);
+        assert_eq!([factor(5.0, 5.0, true), factor(0.3, 0.3, true)], [Some(5.0), Some(0.3)], "white as a whole");
         // Coloured: less from one sample to the next, as much as a whole.
         assert_eq!(factor(0.45, 1.0, true), None);
         // Raw samples bound it from above.

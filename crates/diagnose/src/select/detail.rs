@@ -56,12 +56,12 @@ fn closer(problem: &Problem<'_>, before: &Fitted, now: &Fitted) -> Option<(Fitte
 /// A fit whose laws have what they hold in reserve, where it is better so: from next to what they are without, and from each end of what there is.
 pub(super) fn relaxed(problem: &Problem<'_>, now: Fitted, many: usize) -> Fitted {
     let begins = |(h, x): &Member| h.relaxed(x).into_iter().chain(h.relaxed_afar(x).into_iter().flatten()).collect();
-    with_others(problem, now, many, (&begins, false))
+    with_others(problem, now, many, begins, false)
 }
 
 /// A fit whose laws are the richer ones of their kind, where it is better so: each begins where the plainer one stands, with what that has had to free.
 pub(super) fn enriched(problem: &Problem<'_>, now: Fitted, known: &[Hypothesis], many: usize) -> Fitted {
-    with_others(problem, now, many, (&|member| richer(member, known), true))
+    with_others(problem, now, many, |member| richer(member, known), true)
 }
 
 /// A fit with each of its findings as the best of what others begin in its place, where that is better by the criterion; once it has come to its end,
@@ -70,7 +70,8 @@ fn with_others(
     problem: &Problem<'_>,
     mut now: Fitted,
     many: usize,
-    (begins, are_far): (&dyn Fn(&Member) -> Vec<Member>, bool),
+    begins: impl Fn(&Member) -> Vec<Member>,
+    are_far: bool,
 ) -> Fitted {
     let all: Vec<String> = now.set.findings().map(|(h, _)| h.title()).collect();
     for title in all {

@@ -20,7 +20,11 @@ pub static SENSOR_DELAY: EffectDef = EffectDef {
     identify: Identify {
         candidates: Candidates::Sensor(|sensor| {
             let coordinates = vec![Coordinate::free("delay", 0.0).within([-0.2, 0.5])];
-            vec![Candidate::new(sensor.place(), coordinates).screened(&[Along::new(0, 1e-4)])]
+            vec![
+                Candidate::new(sensor.place(), coordinates)
+                    .screened(&[Along::new(0, 1e-4)])
+                    .screened_at("late", &[vec![LATE]]),
+            ]
         }),
         tier: Tier::Exotic,
         tolerance: Some(|tolerance, _| vec![tolerance.clock_s]),
@@ -33,3 +37,6 @@ pub static SENSOR_DELAY: EffectDef = EffectDef {
     shown: Shown::Each,
     corrects: Corrects::Nothing,
 };
+
+/// Delay by which it is screened beside its derivative, s: what moves fast is elsewhere by then.
+const LATE: f64 = 8e-3;
