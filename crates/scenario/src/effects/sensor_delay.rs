@@ -30,7 +30,7 @@ pub static SENSOR_DELAY: EffectDef = EffectDef {
         tolerance: Some(|tolerance, _| vec![tolerance.clock_s]),
         penalty: None,
         nested: None,
-        start: Start::Mean,
+        start: Start::Proportional,
         minima: Minima::One,
         concerns: Concerns::Motion,
     },
