@@ -133,13 +133,12 @@ pub fn spikes(parts: &[&Series], noise: f64) -> Vec<Spike> {
     let is_force = ChannelName::parse(&first.channel).is_some_and(|name| name.quantity.is_force());
     let by_noise = if is_force { 0.0 } else { BY_NOISE * parts.len() as f64 * variance };
     // The first and last two have no cubic; of the next ones what is left of their neighbourhood tells.
-    let inner = 2..first.len() - 2;
-    let places = inner.clone();
+    let places = 2..first.len() - 2;
     let is_far = |i: &usize| parts.iter().map(|s| cubic(&s.values, *i).powi(2)).sum::<f64>() > FAR * FAR * variance;
     let spike_at = |i: usize, other: Option<usize>| {
         let (mut size, mut all, mut left) = (0.0, 0.0, 0.0);
         for part in parts {
-            let told = told_by(|k| inner.contains(&k).then(|| cubic(&part.values, k)), i, other);
+            let told = told_by(|k| places.contains(&k).then(|| cubic(&part.values, k)), i, other);
             size = if parts.len() == 1 { told.size } else { told.size.hypot(size) };
             (all, left) = (all + told.squares, left + told.left);
         }

@@ -29,13 +29,12 @@ pub static ACTUATOR_LAG: EffectDef = EffectDef {
     corrects: Corrects::Nothing,
 };
 
-/// Time constants by which it is screened, s.
-const SLOW: [f64; 2] = [5e-3, 2e-2];
+/// Time constant by which it is screened, s.
+const SLOW: f64 = 5e-3;
 
 fn candidates(actuator: &ActuatorFact) -> Vec<Candidate> {
-    let coordinates = vec![Coordinate::log("time_constant", SLOW[0], [1e-5, 2.0])];
-    let mut slow =
-        Candidate::new(actuator.place.clone(), coordinates).screened_at("", &SLOW.map(|slow| vec![slow.ln()]));
+    let coordinates = vec![Coordinate::log("time_constant", SLOW, [1e-5, 2.0])];
+    let mut slow = Candidate::new(actuator.place.clone(), coordinates).screened_at("", &[vec![SLOW.ln()]]);
     slow.is_expensive = actuator.largest_command == 0.0;
     vec![slow]
 }
