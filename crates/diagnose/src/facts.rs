@@ -23,8 +23,8 @@ pub struct Facts {
     pub contacts: Vec<ContactFact>,
     /// Mechanisms.
     pub mechanisms: Vec<MechanismFact>,
-    /// Thrusters.
-    pub thrusters: Vec<String>,
+    /// Thrusters, and the largest force that each was asked for, N; zero where commands are only on and off.
+    pub thrusters: Vec<(String, f64)>,
     /// What was measured.
     pub sensors: Vec<SensorFact>,
     /// Acceleration of gravity, m/s², W axes.
@@ -52,7 +52,7 @@ impl Facts {
             bodies: bodies(built),
             contacts: contacts(built),
             mechanisms: built.model.mechanisms.iter().map(mechanism).collect(),
-            thrusters: thrusters(built),
+            thrusters: thrusters(built, tapes),
             sensors,
             gravity: built.model.calc_field(0.0, &spatial::Vec3::zeros()).into(),
             duration: tapes.iter().map(|t| t.span.1 - t.span.0).fold(0.0, f64::max),
@@ -165,6 +165,7 @@ fn bodies(built: &Built) -> Vec<BodyFact> {
                 inertia: link.inertia.tensor_com(),
                 mask,
                 is_base,
+                is_on_joints: link.body != 0,
                 is_torque_free: !pushed && !touched(vehicle.body0) && !held(number) && vehicle.tree.nv == 0,
             });
         }
@@ -192,6 +193,7 @@ fn contacts(built: &Built) -> Vec<ContactFact> {
             continue;
         }
         let normal = normal_numbers(&law.normal);
+        let is_linear = matches!(law.normal.law, NormalLaw::SpringDamper { .. });
         let bristle = match law.friction {
             Some(Friction::Bristle(f)) => Some([f.mu_kinetic, f.stiffness, f.damping]),
             _ => None,
@@ -199,7 +201,15 @@ fn contacts(built: &Built) -> Vec<ContactFact> {
         let (body_a, body_b) = built.model.pair_bodies(pair);
         let mass = [body_a, body_b].map(|b| free_mass(built, b)).into_iter().fold(f64::INFINITY, f64::min);
         let unmoved_by = unmoved(built, pair);
-        all.push(ContactFact { name, normal, bristle, mass, has_normal_motion: normal.is_some(), unmoved_by });
+        all.push(ContactFact {
+            name,
+            normal,
+            is_linear,
+            bristle,
+            mass,
+            has_normal_motion: normal.is_some(),
+            unmoved_by,
+        });
     }
     all
 }
@@ -242,21 +252,37 @@ fn contact_name(built: &Built, pair: usize) -> String {
     format!("{}/{}", side(0), side(1))
 }
 
-/// Mass of the vehicle of a body that moves; infinite for one that does not.
+/// Mass that moves with a body: its vehicle's, what a held base holds apart; infinite for one that does not move.
 fn free_mass(built: &Built, body: usize) -> f64 {
-    let vehicle = built.model.owners.get(body).map(|(v, _)| &built.model.vehicles[*v]);
-    vehicle.filter(|v| !v.base.is_held()).map_or(f64::INFINITY, |v| v.tree.mass())
+    let Some(&(vehicle, local)) = built.model.owners.get(body) else { return f64::INFINITY };
+    let vehicle = &built.model.vehicles[vehicle];
+    let held = vehicle.base.is_held();
+    let moving = if held { vehicle.tree.mass() - vehicle.tree.bodies[0].inertia.mass } else { vehicle.tree.mass() };
+    if held && local == 0 || moving <= 0.0 { f64::INFINITY } else { moving }
 }
 
 fn normal_numbers(normal: &Normal) -> Option<[f64; 3]> {
     match normal.law {
         NormalLaw::HuntCrossley { stiffness, exponent, dissipation } => Some([stiffness, exponent, dissipation]),
-        NormalLaw::SpringDamper { stiffness, .. } => Some([stiffness, 1.0, 0.0]),
+        NormalLaw::SpringDamper { stiffness, damping } => Some([stiffness, 1.0, damping]),
         NormalLaw::Constant { .. } => None,
     }
 }
 
-fn thrusters(built: &Built) -> Vec<String> {
-    let is_thruster = |a: &&sim::Actuator| matches!(a.kind, ActuatorKind::Thruster { .. });
-    built.model.actuators.iter().filter(is_thruster).map(|a| a.name.clone()).collect()
+fn thrusters(built: &Built, tapes: &[Tape]) -> Vec<(String, f64)> {
+    let largest = |(actuator, force): (usize, f64)| {
+        let own = tapes.iter().flat_map(|t| &t.commands).filter(move |c| c.actuator == actuator);
+        let values = || own.clone().flat_map(|c| &c.values);
+        let is_graded = values().any(|v| *v > SHUT * force && *v < (1.0 - SHUT) * force);
+        if is_graded { values().fold(0.0_f64, |m, v| m.max(v.abs())) } else { 0.0 }
+    };
+    let all = built.model.actuators.iter().enumerate();
+    all.filter_map(|(i, a)| match a.kind {
+        ActuatorKind::Thruster { max_force, .. } => Some((a.name.clone(), largest((i, max_force)))),
+        ActuatorKind::JointEffort { .. } | ActuatorKind::JointDrive { .. } | ActuatorKind::LatchRelease { .. } => None,
+    })
+    .collect()
 }
+
+/// Share of its force up to which a thruster is shut, and short of which it is open.
+const SHUT: f64 = 1e-3;

@@ -36,6 +36,8 @@ pub struct Hypothesis {
     pub reserve: Vec<(usize, Begin)>,
     /// Whether its screen is expensive: many points, or memory whose start is free too.
     pub is_dear: bool,
+    /// Whether it is asked for only where nothing else explains what is missing.
+    pub is_last: bool,
     /// Standard deviations of the coordinates where the scenario gives them a tolerance; empty for a finding.
     pub tolerance: Vec<f64>,
 }
@@ -43,7 +45,8 @@ pub struct Hypothesis {
 impl Hypothesis {
     /// What a definition proposes at a place, as a finding.
     pub fn new(def: &'static EffectDef, candidate: Candidate) -> Self {
-        let Candidate { place, constants, coordinates, encoding, screens, held, reserve, is_expensive } = candidate;
+        let Candidate { place, constants, coordinates, encoding, screens, held, reserve, is_expensive, is_last } =
+            candidate;
         Self {
             def,
             name: def.name,
@@ -56,6 +59,7 @@ impl Hypothesis {
             held,
             reserve,
             is_dear: is_expensive,
+            is_last,
             tolerance: Vec::new(),
         }
     }
@@ -195,6 +199,15 @@ impl Hypothesis {
     fn start_from_tensor(&self, columns: &[Column], amplitudes: &[f64]) -> Option<Vec<f64>> {
         let first = self.coordinates.iter().position(|c| c.key.ends_with("[0]"))?;
         let vector = |c: &Column| nalgebra::Vector3::from_fn(|k, _| c.direction[first + k]);
+        if self.coordinates[0].key == "mass" && !self.held.contains(&0) {
+            let strength: f64 = amplitudes.iter().sum();
+            let moment =
+                columns.iter().zip(amplitudes).fold(nalgebra::Vector3::zeros(), |sum, (c, w)| sum + *w * vector(c));
+            let mut x = columns[0].direction.clone();
+            x[0] *= strength;
+            (0..3).for_each(|k| x[first + k] = moment[k] / strength);
+            return (strength > 0.0).then(|| self.clamped(&x));
+        }
         let tensor = columns
             .iter()
             .zip(amplitudes)

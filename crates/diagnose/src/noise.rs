@@ -9,7 +9,7 @@
 //!   s² = min over k of ⟨(Δᵏ r)²⟩ / (2k choose k),      σ ← s σ
 //!
 //! with the mean over the smaller three fifths (impacts do not count). A stated σ is believed within [`SURE`], and left by more than
-//! [`FARTHEST`] only where all that is left is white: else it is not the noise that differs.
+//! [`FARTHEST`] only where all that is left is white, or the last orders agree about s: else it is not the noise that differs.
 
 use crate::error::DiagnoseError;
 use crate::fit::Fit;
@@ -26,6 +26,8 @@ use std::collections::BTreeMap;
 const SURE: f64 = 0.03;
 /// Factor by which samples may differ from a stated σ. Twice the prior's ±20 % at five standard deviations.
 const FARTHEST: f64 = 2.0;
+/// The same where residuals have a white floor beside what a wrong model leaves in them. Data sheets are off by less.
+const FARTHEST_FLOOR: f64 = 5.0;
 /// Factor below which it is no noise that is seen but a coarse encoder at rest.
 const AT_REST: f64 = 0.1;
 /// Share of a channel's samples that may be left out as spikes; where more stand alone, standing alone is how the channel is.
@@ -196,20 +198,21 @@ impl Noise {
             let samples: f64 = stretches.iter().map(|s| s.len() as f64).sum();
             all += samples;
             let slices: Vec<&[f64]> = stretches.iter().map(Vec::as_slice).collect();
-            let Some((s2, count)) = white_variance(&slices) else { continue };
+            let Some(part) = white_variance(&slices) else { continue };
             let is_stated = set.runs.iter().flat_map(|r| &r.series).any(|s| {
                 s.channel.strip_prefix(channel.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
                     && (set.sigma(&s.channel).or_else(|| set.sigma(channel))).is_some()
             });
             let square: f64 = stretches.iter().flatten().map(|r| r * r).sum();
-            let found = Found { white: s2.sqrt(), whole: (square / f64::max(samples, 1.0)).sqrt() };
+            let whole = (square / f64::max(samples, 1.0)).sqrt();
+            let found = Found { white: part.variance.sqrt(), is_floor: part.is_floor, whole };
             let Some(factor) = factor_of(found, is_stated).filter(|f| *f > AT_REST) else { continue };
             // What a coarse encoder reads of a slow motion stays the same from sample to sample, and is wrong by its rounding.
             let factor = factor.max(least_factor(stage.tapes, channel));
             if (factor - 1.0).abs() < SURE {
                 continue;
             }
-            variance += (samples * SPREAD).powi(2) / count as f64;
+            variance += (samples * SPREAD).powi(2) / part.differences as f64;
             factors.insert(channel.clone(), factor);
         }
         let doubt = STATED + if factors.is_empty() { 0.0 } else { DOUBT * variance.sqrt() / f64::max(all, 1.0) };
@@ -250,20 +253,23 @@ fn least_factor(tapes: &[Tape], channel: &str) -> f64 {
 struct Found {
     /// Of what is white in them.
     white: f64,
+    /// Whether all orders of difference agree about it.
+    is_floor: bool,
     /// Of all of them.
     whole: f64,
 }
 
 /// The factor of a channel's σ; none where the samples do not speak against it.
-fn factor_of(Found { white, whole }: Found, is_stated: bool) -> Option<f64> {
+fn factor_of(Found { white, is_floor, whole }: Found, is_stated: bool) -> Option<f64> {
     let s = match is_stated {
         // Noise that is less than stated from one sample to the next may be coloured: only what is less as a whole is less.
         true => white.max(whole.min(1.0)),
         // Raw samples bound the noise from above.
         false => white.min(1.0),
     };
-    // More than twice the stated noise from one sample to the next is a mismatch that is fast, but where all that is left is white.
-    let is_white = whole <= (1.0 + SURE) * white;
+    // More than twice the stated noise from one sample to the next may be a mismatch that is fast, but where all that is left is white, or
+    // what is left has a white floor: what moves fast falls from one order of difference to the next.
+    let is_white = whole <= (1.0 + SURE) * white || is_floor && (1.0..=FARTHEST_FLOOR).contains(&s);
     let is_beyond = is_stated && !is_white && !(1.0 / FARTHEST..=FARTHEST).contains(&s);
     (s.is_finite() && s > 0.0 && (s - 1.0).abs() >= SURE && !is_beyond).then_some(s)
 }
@@ -319,7 +325,9 @@ mod tests {
 
     #[test]
     fn a_stated_figure_is_believed_within_some_per_cent_and_left_by_far_only_for_white_noise() {
-        let factor = |white, whole, is_stated| factor_of(Found { white, whole }, is_stated);
+        let factor = |white, whole, is_stated| factor_of(Found { white, is_floor: false, whole }, is_stated);
+        let with_floor = |white, whole| factor_of(Found { white, is_floor: true, whole }, true);
+        assert_eq!([with_floor(3.0, 40.0), with_floor(0.3, 1.0), with_floor(9.0, 40.0)], [Some(3.0), None, None]);
         assert_eq!(factor(1.02, 1.02, true), None);
         assert_eq!(factor(1.43, 1.43, true), Some(1.43));
         assert_eq!(factor(0.67, 0.67, true), Some(0.67));

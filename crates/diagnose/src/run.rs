@@ -30,7 +30,7 @@ use crate::noise::{self, Noise};
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::Pace;
-use crate::share;
+use crate::share::{self, Use};
 use crate::sought::{Sought, seek};
 use crate::standing::{Standing, fit_in_turns, follow_with};
 use crate::stretches::{cut, joined};
@@ -250,8 +250,8 @@ fn diagnose_in(
     let judgement = judge((&few, &stage), &plant, ([&nominal, &whole], [&found, &found]), (window, follows))?;
     let left = left_by((&few, &thin), &plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
-    let (explained, helps) = share::explained(&judgement, &tapes, &found, window);
-    let verdict = verdict(&judgement, &found, (follows, helps));
+    let (explained, of_use) = share::explained(&judgement, &tapes, &found, window);
+    let verdict = verdict(&judgement, &found, (follows, of_use));
     let uncertainty = how_sure(&stage, &plant, &found, verdict)?;
     rivals.retain(|(title, _)| found.set.findings().any(|(h, _)| h.title() == *title));
     let remains = if found.is_significant() { found.excess() } else { 0.0 };
@@ -313,8 +313,8 @@ fn diagnose_whole(
     let located = locate(few, plant, &nominal, places(&own, window))?;
     let left = left_by((few, few), plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
-    let (explained, helps) = share::explained(&judgement, &tapes, &found, window);
-    let verdict = verdict_along(&course, &judgement, (&found, follows), helps);
+    let (explained, of_use) = share::explained(&judgement, &tapes, &found, window);
+    let verdict = verdict_along(&course, &judgement, (&found, follows), of_use);
     let from_profile = vec![false; best.set.slots().len()];
     let uncertainty = Uncertainty { covariance: best.covariance.clone(), from_profile, optimism: f64::NAN };
     clock.stage("write", 1.0);
@@ -392,7 +392,7 @@ fn verdict_along(
     course: &along::Course,
     judgement: &Judgement,
     (found, follows): (&Fit, bool),
-    helps: bool,
+    of_use: Use,
 ) -> Verdict {
     let [before, after] = course.left;
     let [nominal, corrected] = judgement.rms(!follows, |run| found.has_run(run));
@@ -402,9 +402,9 @@ fn verdict_along(
         let is_noise = before.is_noise() || is_next_to_noise;
         return if is_noise { Verdict::NoMismatch } else { Verdict::Unknown };
     }
-    if is_next_to_noise {
+    if is_next_to_noise && of_use.is_whole {
         Verdict::Explained
-    } else if helps {
+    } else if of_use.helps {
         Verdict::PartlyExplained
     } else {
         Verdict::Unknown
@@ -580,17 +580,17 @@ fn window_of(set: &RecordingSet, tapes: &[Tape], parts: f64) -> f64 {
 const WINDOWS: [f64; 2] = [12.0, 7.5];
 
 /// What was found, from what it leaves and from what it does for runs left out of the fit: an effect that helps there is never dropped.
-fn verdict(judgement: &Judgement, found: &Fit, (follows, helps): (bool, bool)) -> Verdict {
-    if !found.is_significant() {
-        return if !found.set.has_findings() { Verdict::NoMismatch } else { Verdict::Explained };
+fn verdict(judgement: &Judgement, found: &Fit, (follows, of_use): (bool, Use)) -> Verdict {
+    if !found.is_significant() && !found.set.has_findings() {
+        return Verdict::NoMismatch;
     }
     let [before, after] = judgement.rms(!follows, |run| found.has_run(run));
     let left = (after * after - 1.0) / (before * before - 1.0).max(1e-9);
     if !found.set.has_findings() {
         Verdict::Unknown
-    } else if left < NEXT_TO_NOTHING && after < RIGHT {
+    } else if of_use.is_whole && (!found.is_significant() || left < NEXT_TO_NOTHING && after < RIGHT) {
         Verdict::Explained
-    } else if helps {
+    } else if of_use.helps {
         Verdict::PartlyExplained
     } else {
         Verdict::Unknown

@@ -25,6 +25,9 @@ const DRAWS: usize = 1000;
 const TAIL: f64 = 0.025;
 /// Growth of a run's mean square above noise that is harm. At 1 a hair's breadth would be harm, at 2 a run may become twice as wrong.
 const HARM: f64 = 1.2;
+/// Error in windows (units of noise) and share of the mismatch up to which what is left on runs that were left out is no second explanation's.
+const LEFT: f64 = 1.5;
+const NEXT_TO_NOTHING: f64 = 0.01;
 /// The same in standard deviations of what noise alone leaves.
 const SIGMAS: f64 = 4.0;
 
@@ -68,8 +71,17 @@ impl Window {
     }
 }
 
-/// What the corrected model explains, and whether it helps.
-pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, window_s: f64) -> (Explained, bool) {
+/// What a corrected model does for the runs that judge it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Use {
+    /// Whether it helps there.
+    pub helps: bool,
+    /// Whether it may be the whole explanation: it leaves next to nothing there, and makes none of them worse.
+    pub is_whole: bool,
+}
+
+/// What the corrected model explains, and of what use it is.
+pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, window_s: f64) -> (Explained, Use) {
     let judging = judging(tapes);
     let left_out = judging == Role::Holdout;
     let runs = windows_of(judgement, |run| tapes[run].role == judging);
@@ -81,7 +93,9 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
     let interval = interval(runs, share_of);
     let is_gain = || all.share() > 0.0 && self::interval(runs, mean_log_gain)[0] > 0.0;
     let helps = (interval[0] > 0.0 || is_gain()) && harmed.is_empty();
-    (Explained { share: all.share(), interval, window_s, runs: count, left_out, harmed }, helps)
+    let leaves_little = all.after <= LEFT * LEFT * all.count || all.share() > 1.0 - NEXT_TO_NOTHING;
+    let is_whole = leaves_little && harmed.is_empty() && interval[1] >= 0.0;
+    (Explained { share: all.share(), interval, window_s, runs: count, left_out, harmed }, Use { helps, is_whole })
 }
 
 /// Windows by run.

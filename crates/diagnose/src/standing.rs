@@ -215,7 +215,12 @@ impl Standing {
         if whole.rms() >= self.whole.rms() {
             return Ok(self);
         }
-        let windows = Fit { set: best.1, built: whole.built.clone(), ..self.windows.clone() };
+        // What a window tells is not given up for a whole run, least of all for one that is followed nowhere.
+        let windows = fit(stage, plant, best.1.frozen(), self.windows.segments.clone(), Effort::STARTS)?;
+        if windows.rms() > FAIR && lost::calc_share(stage, &windows) > FEW {
+            return Ok(self);
+        }
+        let windows = Fit { set: best.1, covariance: self.windows.covariance.clone(), ..windows };
         Ok(Self { windows, whole, ..self })
     }
 

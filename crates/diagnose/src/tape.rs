@@ -7,6 +7,7 @@ use crate::noise;
 use crate::plant::{Built, Plant};
 use crate::reading::{Reading, Value};
 use crate::replay::{SAME, Span};
+use crate::unheard;
 use record::{RecordedRun, RecordingSet, Role, Series};
 use scenario::measure::{MeasureError, Quantity};
 use sim::Model;
@@ -96,6 +97,7 @@ impl Tape {
     ///
     /// Channels that the scenario does not know are errors; those that only tell what was commanded or driven are inputs.
     pub fn new(set: &RecordingSet, run: &RecordedRun, plant: &Plant, model: &Model) -> Result<Self, DiagnoseError> {
+        let in_newtons = unheard::has_thrusts(set, plant, model);
         let refuse = |error: MeasureError| DiagnoseError::Channel {
             channel: error.channel,
             file: run.file.clone(),
@@ -111,6 +113,8 @@ impl Tape {
             }
             if let Some(found) = plant.actuator(model, beside.as_deref().unwrap_or(&series.channel)) {
                 let (actuator, what, unit) = found.map_err(refuse)?;
+                // Shares of a thruster's force, or that force itself.
+                let unit = if in_newtons { 1.0 } else { unit };
                 let values = series.values.iter().map(|v| v * unit).collect();
                 commands.push(CommandTape { actuator, what, times: series.times.to_vec(), values });
                 continue;

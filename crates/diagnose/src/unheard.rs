@@ -4,9 +4,10 @@
 
 use crate::error::DiagnoseError;
 use crate::number::short;
-use crate::plant::Built;
+use crate::plant::{Built, Plant};
 use crate::tape::Tape;
-use record::Role;
+use record::{RecordingSet, Role, Series};
+use sim::{ActuatorKind, Model};
 
 /// Instants at which something is read that a run has at least: with fewer nothing but its start is told.
 const FEWEST: usize = 4;
@@ -32,6 +33,20 @@ pub(crate) fn refuse_too_little(tapes: &[Tape]) -> Result<(), DiagnoseError> {
         )),
     }
 }
+
+/// Whether the commands of thrusters are forces, N, and no shares of what these can do: a share is at most one.
+pub(crate) fn has_thrusts(set: &RecordingSet, plant: &Plant, model: &Model) -> bool {
+    let is_thruster = |channel: &str| {
+        let found = plant.actuator(model, channel).and_then(Result::ok);
+        found.is_some_and(|(i, ..)| matches!(model.actuators[i].kind, ActuatorKind::Thruster { .. }))
+    };
+    let is_beyond = |series: &&Series| series.values.iter().any(|v| v.abs() > 1.0 + ROUNDED);
+    let series = set.runs.iter().flat_map(|run| &run.series).filter(|s| s.channel.starts_with("actuator."));
+    series.filter(is_beyond).any(|s| is_thruster(&s.channel))
+}
+
+/// What a share may exceed one by for being rounded.
+const ROUNDED: f64 = 1e-3;
 
 /// Commands that some or all runs do not have, in words.
 pub(crate) fn said_of_commands(built: &Built, tapes: &[Tape]) -> Vec<String> {

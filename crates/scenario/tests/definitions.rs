@@ -32,15 +32,17 @@ fn bodies() -> [BodyFact; 2] {
         inertia: Mat3::from_diagonal(&Vec3::new(1.0, 2.0, 2.5)),
         mask: [true; 6],
         is_base: true,
+        is_on_joints: false,
         is_torque_free: false,
     };
-    let link = BodyFact { name: "link".into(), mask: [false; 6], is_base: false, ..base.clone() };
+    let link = BodyFact { name: "link".into(), mask: [false; 6], is_base: false, is_on_joints: true, ..base.clone() };
     [base, link]
 }
 
 fn contact() -> ContactFact {
     ContactFact {
         name: "pad/plate".into(),
+        is_linear: false,
         normal: Some([1e5, 1.5, 0.3]),
         bristle: Some([0.25, 1e5, 50.0]),
         mass: 40.0,

@@ -54,9 +54,12 @@ fn actuators(facts: &Facts) -> Vec<ActuatorFact> {
         largest_command: joint.largest_command,
         is_thruster: false,
     });
-    let together = (facts.thrusters.len() > 1).then_some("*");
-    let names = facts.thrusters.iter().map(String::as_str).chain(together);
-    let thruster =
-        |name: &str| ActuatorFact { place: format!("actuator:{name}"), largest_command: 0.0, is_thruster: true };
+    let together = (facts.thrusters.len() > 1).then_some(("*", 0.0));
+    let names = facts.thrusters.iter().map(|(name, largest)| (name.as_str(), *largest)).chain(together);
+    let thruster = |(name, largest_command): (&str, f64)| ActuatorFact {
+        place: format!("actuator:{name}"),
+        largest_command,
+        is_thruster: true,
+    };
     drive.chain(names.map(thruster)).collect()
 }

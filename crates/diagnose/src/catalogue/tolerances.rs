@@ -66,10 +66,12 @@ mod tests {
                 inertia: Mat3::from_diagonal(&Vec3::new(1.0, 2.0, 3.0)),
                 mask: [false; 6],
                 is_base: false,
+                is_on_joints: true,
                 is_torque_free: false,
             }],
             contacts: vec![ContactFact {
                 name: "pad/plate".into(),
+                is_linear: false,
                 normal: Some([1e5, 1.5, 0.3]),
                 bristle: Some([0.25, 1e5, 50.0]),
                 mass: 4.0,

@@ -129,6 +129,7 @@ mod tests {
             inertia: Mat3::identity(),
             mask: [false, false, true, true, true, false],
             is_base: true,
+            is_on_joints: false,
             is_torque_free: false,
         };
         let all = forces(&Facts { joints: vec![joint], bodies: vec![body], ..Facts::default() });

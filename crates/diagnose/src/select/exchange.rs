@@ -11,6 +11,7 @@ use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem};
+use crate::place::same_place;
 use crate::screen::Score;
 use crate::work::Until;
 
@@ -59,6 +60,56 @@ pub(super) fn exchanged(
     Ok((now, stood))
 }
 
+/// A fit with one law in the place of several at one body or joint, where that is better by the criterion: a load is a mass, a centre and an inertia, and these came one
+/// after the other.
+pub(super) fn united(
+    problem: &Problem<'_>,
+    mut now: Fitted,
+    (tried, shown): (&[Tried], &[(Hypothesis, Score)]),
+    many: usize,
+) -> Fitted {
+    let places: Vec<String> = now.set.findings().map(|(h, _)| h.place.clone()).collect();
+    let is_crowded = |(k, place): &(usize, &String)| places[..*k].iter().any(|other| same_place(other, place));
+    for (_, place) in places.iter().enumerate().filter(is_crowded) {
+        let is_here = |h: &Hypothesis| !h.is_tolerated() && same_place(&h.place, place);
+        let own: Vec<usize> = (0..now.set.members.len()).rev().filter(|m| is_here(&now.set.members[*m].0)).collect();
+        let others = own.iter().fold(now.set.clone(), |set, m| set.without(*m));
+        let candidates = of_a_place((tried, shown), |h| is_here(h) && !now.set.titles().contains(&h.title()));
+        let mut better: Option<Fitted> = None;
+        for (one, start) in candidates.iter().take(UNTRIED) {
+            if problem.stage.work.is_spent(Until::Prune) {
+                break;
+            }
+            // It has a long way to go, for it was found beside less.
+            let Ok(glance) = problem.fit(&now, others.with(one, start), LOOK) else { continue };
+            let Ok(look) = problem.fit(&glance, glance.set.clone(), LOOK) else { continue };
+            let costs = criterion(&look, many) - criterion(&now, many);
+            let said = format!("  {} in the place of {} others at {place} costs {costs:.1}", one.title(), own.len());
+            problem.stage.work.watch.step(&said);
+            if costs < better.as_ref().map_or(0.0, |b| criterion(b, many) - criterion(&now, many)) {
+                better = Some(look);
+            }
+        }
+        now = better.map_or(now, |better| to_the_end(problem, better));
+    }
+    now
+}
+
+/// Laws that are wanted, each as it was last found, else as it was promised.
+fn of_a_place(
+    (tried, shown): (&[Tried], &[(Hypothesis, Score)]),
+    is_wanted: impl Fn(&Hypothesis) -> bool,
+) -> Vec<(Hypothesis, Vec<f64>)> {
+    let found = tried.iter().rev().flat_map(|t| t.set.findings()).map(|(h, x)| (h, x));
+    let mut all: Vec<(Hypothesis, Vec<f64>)> = Vec::new();
+    for (h, x) in found.chain(shown.iter().map(|(h, score)| (h, &score.start))).filter(|(h, _)| is_wanted(h)) {
+        if all.iter().all(|(known, _)| known.title() != h.title()) {
+            all.push((h.clone(), x.clone()));
+        }
+    }
+    all
+}
+
 /// A fit with another law in a member's place; none where that is out of the question.
 fn in_its_place(
     problem: &Problem<'_>,
@@ -104,7 +155,8 @@ fn untried(
 ) -> Vec<(Hypothesis, Vec<f64>)> {
     let is_tried = |h: &Hypothesis| tried.iter().any(|t| t.added == [h.title()]);
     let mut all: Vec<(Hypothesis, Vec<f64>)> = Vec::new();
-    for (h, score) in shown.iter().filter(|(h, s)| h.place == member.place && s.score > 0.0 && !is_tried(h)) {
+    for (h, score) in shown.iter().filter(|(h, s)| same_place(&h.place, &member.place) && s.score > 0.0 && !is_tried(h))
+    {
         let mut known = set.members.iter().map(|m| &m.0).filter(|m| m.title() != member.title());
         let is_new = h.title() != member.title() && all.iter().all(|(a, _)| a.title() != h.title());
         if is_new && !known.any(|k| k.title() == h.title() || are_kin(h, k)) {
@@ -122,12 +174,15 @@ const UNTRIED: usize = 2;
 fn equals(member: &Hypothesis, set: &EffectSet, tried: &[Tried]) -> Vec<(Hypothesis, Vec<f64>)> {
     let mut all: Vec<(Hypothesis, Vec<f64>)> = Vec::new();
     let is_here = |t: &&Tried| {
-        t.added.len() == 1 && t.set.findings().any(|(h, _)| h.place == member.place && t.added[0] == h.title())
+        t.added.len() == 1
+            && t.set.findings().any(|(h, _)| same_place(&h.place, &member.place) && t.added[0] == h.title())
     };
     let gain = |t: &Tried| t.criteria[0] - t.criteria[1];
     let best = |round: usize| tried.iter().filter(is_here).filter(|t| t.round == round).map(gain).fold(0.0, f64::max);
     for one in tried.iter().rev().filter(is_here).filter(|t| gain(t) > 0.0 && gain(t) >= EQUAL * best(t.round)) {
-        for (h, x) in one.set.findings().filter(|(h, _)| h.place == member.place && one.added.contains(&h.title())) {
+        for (h, x) in
+            one.set.findings().filter(|(h, _)| same_place(&h.place, &member.place) && one.added.contains(&h.title()))
+        {
             let is_known =
                 set.members.iter().map(|m| &m.0).chain(all.iter().map(|a| &a.0)).any(|k| k.title() == h.title());
             if !is_known {

@@ -1,7 +1,7 @@
 //! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
 
 use super::detail::{enriched, relaxed, simpler};
-use super::exchange::exchanged;
+use super::exchange::{exchanged, united};
 use super::gamma_quantile_over_mean;
 use super::kin::alone_of_their_kind;
 use super::left::{Left, is_as_quiet, quieting};
@@ -114,7 +114,8 @@ pub fn search(
     let found = Found { nominal, best, criteria: [f64::NAN; 2], tried, equals, shown, left: 0.0 };
     let (known, refused) = (first.clone(), Vec::new());
     let ways = Vec::new();
-    let mut search = Search { problem, hypotheses, many, all, numbers, known, refused, ways, smaller: None, found };
+    let mut search =
+        Search { problem, hypotheses, many, all, numbers, known, refused, ways, smaller: None, is_wide: false, found };
     let mut now = match begun {
         Some(begun) => search.forward(begun, 1, None)?,
         None => search.forward(search.found.nominal.clone(), 0, None)?,
@@ -140,6 +141,7 @@ pub fn search(
     };
     let free = if free.score < before { to_the_end(problem, free) } else { free };
     let plain = simplified(problem, free, &known, (many, all))?;
+    let plain = united(problem, plain, (&found.tried, &found.shown), many);
     let titles = plain.set.titles();
     (found.best, found.equals) = exchanged(problem, plain, (&found.tried, &found.shown), many)?;
     if found.best.set.titles() != titles {
@@ -168,6 +170,8 @@ struct Search<'a> {
     ways: Vec<BTreeSet<String>>,
     /// The best of those with fewer effects than what the first round took.
     smaller: Option<Fitted>,
+    /// Whether what is asked last is asked by now.
+    is_wide: bool,
     found: Found,
 }
 
@@ -226,7 +230,14 @@ impl Search<'_> {
         bounds: Bounds,
     ) -> Result<Option<Fitted>, DiagnoseError> {
         let (problem, round) = (self.problem, bounds.round);
-        let looked = look(problem, now, candidates, room.min(AT_ONCE))?;
+        let (last, first): (Vec<Hypothesis>, Vec<Hypothesis>) = candidates.into_iter().partition(|h| h.is_last);
+        let all = || [first.clone(), last.clone()].concat();
+        let mut looked = look(problem, now, if self.is_wide { all() } else { first.clone() }, room.min(AT_ONCE))?;
+        if !self.is_wide && !last.is_empty() && looked.grown.leaves_much() {
+            problem.stage.work.watch.step("that explains too little: loads on links as well");
+            self.is_wide = true;
+            looked = look(problem, now, all(), room.min(AT_ONCE))?;
+        }
         if round == 0 {
             (self.found.shown, self.found.left) = (shown(&looked.pool, &looked.grown), looked.grown.left);
         }
@@ -364,8 +375,8 @@ fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>, bare: &[Chain
     let is_dull = |place: &str| {
         let own = problem.forces.iter().zip(&rises).filter(|(f, _)| f.place == place);
         let rise = own.map(|(_, rise)| *rise).reduce(f64::max);
-        // What holds passes a joint's force on to where it is held.
-        let says = largest > SPEAKING && !holds(&now.built);
+        // What holds passes a joint's force on to where it is held, and numbers that may be off by a tolerance take it on as far as they can.
+        let says = largest > SPEAKING && !holds(&now.built) && problem.plant.scenario.tolerance.is_exact();
         says && place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
     };
     all.into_iter().filter(|h| !is_dull(&h.place)).filter_map(|h| now.set.still_open(h)).collect()

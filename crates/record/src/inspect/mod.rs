@@ -9,7 +9,7 @@ mod quality;
 mod text;
 mod warn;
 
-pub use noise::{white_noise, white_variance};
+pub use noise::{White, white_noise, white_variance};
 pub use quality::{Clock, Spike, Stuck, at_limit, clock, spikes, stuck};
 pub use text::{said_once, to_text};
 

@@ -32,7 +32,7 @@ pub static ACTUATOR_SATURATION: EffectDef = EffectDef {
 /// Where commands are only on and off a limit is a gain.
 fn candidates(actuator: &ActuatorFact) -> Vec<Candidate> {
     let largest = actuator.largest_command;
-    if actuator.is_thruster || largest <= 0.0 {
+    if largest <= 0.0 {
         return Vec::new();
     }
     let coordinates = vec![Coordinate::log("limit", 0.8 * largest, [1e-3 * largest, largest])];

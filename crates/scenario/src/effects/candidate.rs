@@ -226,6 +226,8 @@ pub struct Candidate {
     pub reserve: Vec<(usize, Begin)>,
     /// Whether its screen is expensive: many points, or memory whose start is free too.
     pub is_expensive: bool,
+    /// Whether it is asked for only where nothing else explains what is missing.
+    pub is_last: bool,
 }
 
 /// Where a fit of a coordinate begins that was held.
@@ -249,6 +251,7 @@ impl Candidate {
             held: Vec::new(),
             reserve: Vec::new(),
             is_expensive: false,
+            is_last: false,
         }
     }
 
@@ -279,6 +282,13 @@ impl Candidate {
     /// The same with an expensive screen.
     pub fn expensive(mut self) -> Self {
         self.is_expensive = true;
+        self
+    }
+
+    /// The same, asked for last where `is_last`.
+    pub fn asked_last(mut self, is_last: bool) -> Self {
+        self.is_last = is_last;
+        self.is_expensive |= is_last;
         self
     }
 

@@ -65,20 +65,20 @@ fn axes(entry: &Entry<'_>) -> Axes {
 
 /// On what slides under its own weight a force is a tilt.
 fn force(body: &BodyFact, survey: &Survey<'_>) -> Vec<Candidate> {
-    let is_free = body.is_base && body.slides().iter().any(|m| *m) && !survey.rests(body);
-    if is_free { in_each_frame(body, body.slides(), body.mass * 1e-5) } else { Vec::new() }
+    let is_free = body.shifts().contains(&true) && !(body.is_base && survey.rests(body));
+    if is_free { in_each_frame(body, body.shifts(), body.mass * 1e-5) } else { Vec::new() }
 }
 
 fn torque(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
-    let is_free = body.is_base && body.turns().iter().any(|m| *m);
-    if is_free { in_each_frame(body, body.turns(), 1e-6) } else { Vec::new() }
+    let is_free = body.twists().contains(&true);
+    if is_free { in_each_frame(body, body.twists(), 1e-6) } else { Vec::new() }
 }
 
-fn in_each_frame(body: &BodyFact, mask: &[bool], step: f64) -> Vec<Candidate> {
+fn in_each_frame(body: &BodyFact, mask: [bool; 3], step: f64) -> Vec<Candidate> {
     let columns = Along::each((0..3).filter(|k| mask[*k]), step);
     let of = |frame: &str| {
         let vector = Coordinate::vector(["vector[0]", "vector[1]", "vector[2]"], [0.0; 3]);
-        Candidate::new(body.place(), vector).screened(&columns).with_word("frame", frame)
+        Candidate::new(body.place(), vector).screened(&columns).with_word("frame", frame).asked_last(!body.is_base)
     };
     FRAMES.map(of).into()
 }

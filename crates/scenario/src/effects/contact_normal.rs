@@ -28,7 +28,11 @@ pub static CONTACT_STIFFNESS: EffectDef = EffectDef {
                 vec![Coordinate::log("k", k, [1e-3 * k, 1e3 * k]), Coordinate::free("n", n).within([1.0, 3.0])];
             let columns = [Along::new(0, 1e-4), Along::new(1, 1e-5)];
             let law = Encoding::PowerLaw { exponent: n };
-            vec![Candidate::new(contact.place(), coordinates).encoded(law).screened(&columns)]
+            let stiffness = Candidate::new(contact.place(), coordinates).encoded(law);
+            vec![match contact.is_linear {
+                true => stiffness.screened(&columns[..1]).holding(vec![1]),
+                false => stiffness.screened(&columns),
+            }]
         }),
         tier: Tier::Nominal,
         tolerance: Some(|tolerance, _| {

@@ -81,13 +81,14 @@ pub static ANGULAR_DAMPING: EffectDef = EffectDef {
 };
 
 fn slides(body: &BodyFact) -> bool {
-    body.is_base && body.slides().iter().any(|m| *m)
+    body.shifts().contains(&true)
 }
 
 fn turns(body: &BodyFact) -> bool {
-    body.is_base && body.turns().iter().any(|m| *m)
+    body.twists().contains(&true)
 }
 
 fn damped(body: &BodyFact, step: f64) -> Vec<Candidate> {
-    vec![Candidate::new(body.place(), vec![Coordinate::level("c", 0.0)]).screened(&[Along::new(0, step)])]
+    let drag = Candidate::new(body.place(), vec![Coordinate::level("c", 0.0)]).screened(&[Along::new(0, step)]);
+    vec![drag.asked_last(!body.is_base)]
 }

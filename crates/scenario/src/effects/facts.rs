@@ -46,6 +46,8 @@ pub struct BodyFact {
     pub mask: [bool; 6],
     /// Whether it is a vehicle's base.
     pub is_base: bool,
+    /// Whether joints move it.
+    pub is_on_joints: bool,
     /// Whether nothing but its own inertia moves it: no thruster, no contact, no mechanism.
     pub is_torque_free: bool,
 }
@@ -55,8 +57,10 @@ pub struct BodyFact {
 pub struct ContactFact {
     /// `probe/drogue`.
     pub name: String,
-    /// Normal law: stiffness, exponent, dissipation.
+    /// Normal law: stiffness, exponent, dissipation (of a linear law its damping, N s/m).
     pub normal: Option<[f64; 3]>,
+    /// Whether that is a spring and a damper, whose exponent is one whatever happens.
+    pub is_linear: bool,
     /// Bristle law: level, stiffness, damping.
     pub bristle: Option<[f64; 3]>,
     /// Mass of the lighter free body, kg.
@@ -129,6 +133,32 @@ impl BodyFact {
     /// Axes along which it can move as a base.
     pub fn slides(&self) -> &[bool] {
         &self.mask[3..]
+    }
+
+    /// Axes along which something may push it: the link of an arm goes wherever its joints let it.
+    pub fn shifts(&self) -> [bool; 3] {
+        std::array::from_fn(|k| if self.is_base { self.mask[3 + k] } else { self.is_on_joints })
+    }
+
+    /// Axes about which something may turn it.
+    pub fn twists(&self) -> [bool; 3] {
+        std::array::from_fn(|k| if self.is_base { self.mask[k] } else { self.is_on_joints })
+    }
+
+    /// Axes about which it can turn as a base, by number.
+    pub fn turning(&self) -> impl Iterator<Item = usize> {
+        let mask = self.mask;
+        (0..3).filter(move |k| mask[*k])
+    }
+
+    /// Whether it is a base that can turn.
+    pub fn can_turn(&self) -> bool {
+        self.is_base && self.turns().iter().any(|m| *m)
+    }
+
+    /// Whether it is a base that something pushes along as well: what moves in it shows by its weight, not by its moment alone.
+    pub fn is_pushed(&self) -> bool {
+        self.is_base && !self.is_torque_free && self.slides().iter().any(|m| *m)
     }
 
     /// Whether it is a base that can turn about every axis.

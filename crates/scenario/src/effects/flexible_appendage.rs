@@ -48,13 +48,16 @@ pub static FLEXIBLE_APPENDAGE: EffectDef = EffectDef {
 };
 
 fn candidates(body: &BodyFact, survey: &Survey<'_>) -> Vec<Candidate> {
-    if !body.tumbles() {
+    if !body.can_turn() {
         return Vec::new();
     }
     let mut coordinates =
         vec![Coordinate::log("frequency", 0.1, [5e-3, 20.0]), Coordinate::log("damping", 0.01, [1e-4, 1.0])];
     coordinates.extend(Coordinate::vector(["coupling[0]", "coupling[1]", "coupling[2]"], [0.0; 3]));
-    let mut mode = Candidate::new(body.place(), coordinates).expensive();
+    let still: Vec<usize> = (0..3).filter(|k| !body.turns()[*k]).collect();
+    let axes = dyad_axes().into_iter().filter(|axis| still.iter().all(|k| axis[*k] == 0.0)).collect::<Vec<Vec3>>();
+    let held = still.iter().map(|k| 2 + k).collect();
+    let mut mode = Candidate::new(body.place(), coordinates).holding(held).expensive();
     let neutral = mode.neutral();
     // A hundredth of the inertia.
     let size = (0.01 * body.inertia.trace() / 3.0).sqrt();
@@ -65,7 +68,7 @@ fn candidates(body: &BodyFact, survey: &Survey<'_>) -> Vec<Candidate> {
             (0..3).for_each(|k| x[2 + k] = size * axis[k]);
             x
         };
-        mode = mode.screened_at(&format!("f = {f:.3} Hz"), &dyad_axes().iter().map(point).collect::<Vec<_>>());
+        mode = mode.screened_at(&format!("f = {f:.3} Hz"), &axes.iter().map(point).collect::<Vec<_>>());
     }
     vec![mode]
 }

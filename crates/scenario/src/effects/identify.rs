@@ -194,7 +194,8 @@ pub enum Start {
     LogProportional,
     /// The mean, but the first coordinate, a logarithm, falls with the strength.
     LogInverse,
-    /// The points are along six axes, and the effect goes with the dyad of the vector coordinate: the largest principal axis of the sum.
+    /// The points are along six axes, and the effect goes with the dyad of the vector coordinate: the largest principal axis of the sum. Where the first
+    /// coordinate is a mass that is free, that and its first moment add up.
     Dyad,
 }
 

@@ -38,7 +38,7 @@ pub static INTERNAL_DISSIPATION: EffectDef = EffectDef {
 };
 
 fn candidates(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
-    if !body.tumbles() {
+    if !body.can_turn() {
         return Vec::new();
     }
     let coordinates = vec![Coordinate::level("i_damper", 0.0), Coordinate::log("c", 0.01, [1e-5, 10.0])];

@@ -51,7 +51,7 @@ const SHARE: f64 = 0.01;
 const DISTANCE: f64 = 0.3;
 
 fn candidates(body: &BodyFact, survey: &Survey<'_>) -> Vec<Candidate> {
-    if !body.tumbles() {
+    if !body.can_turn() {
         return Vec::new();
     }
     let mass = SHARE * body.mass;
@@ -62,19 +62,33 @@ fn candidates(body: &BodyFact, survey: &Survey<'_>) -> Vec<Candidate> {
     ];
     let position = Coordinate::vector(["position[0]", "position[1]", "position[2]"], [0.0; 3]);
     coordinates.extend(position.into_iter().map(|c| c.within([-10.0, 10.0])));
-    // A tumble shows m p pᵀ: the mass alone stays as it is.
-    let mut slosh = Candidate::new(body.place(), coordinates).holding(vec![0]).expensive();
+    // In a plane nothing tells how high it is.
+    let flat = (0..3).filter(|k| !body.slides()[*k] && body.turning().eq([*k]));
+    let held: Vec<usize> = flat.map(|k| 3 + k).collect();
+    // A tumble shows m p pᵀ, so that the mass alone stays as it is; what is pushed shows m and m p too.
+    let (places, held) = match body.is_pushed() {
+        true => (around(&held), held),
+        false => (dyad_axes().map(|axis| DISTANCE * axis).to_vec(), [vec![0], held].concat()),
+    };
+    let mut slosh = Candidate::new(body.place(), coordinates).holding(held).expensive();
     let neutral = slosh.neutral();
     for f in modes(survey) {
-        let point = |axis: &Vec3| {
+        let point = |place: &Vec3| {
             let mut x = neutral.clone();
             (x[0], x[1]) = (mass, f.ln());
-            (0..3).for_each(|k| x[3 + k] = DISTANCE * axis[k]);
+            (0..3).for_each(|k| x[3 + k] = place[k]);
             x
         };
-        slosh = slosh.screened_at(&format!("f = {f:.3} Hz"), &dyad_axes().iter().map(point).collect::<Vec<_>>());
+        slosh = slosh.screened_at(&format!("f = {f:.3} Hz"), &places.iter().map(point).collect::<Vec<_>>());
     }
     vec![slosh]
+}
+
+/// The centre and places on either side of it along each axis that is not held: masses there add up to one with its first moment.
+fn around(held: &[usize]) -> Vec<Vec3> {
+    let axes = (0..3).filter(|k| !held.contains(&(3 + k)));
+    let sides = axes.flat_map(|k| [Vec3::ith(k, DISTANCE), Vec3::ith(k, -DISTANCE)]);
+    std::iter::once(Vec3::zeros()).chain(sides).collect()
 }
 
 /// Frequencies (Hz) at which a part that swings inside a body is screened: those that the data show, six periods in the longest run, and more.

@@ -43,8 +43,8 @@ pub static TETHER_STIFFNESS: EffectDef = EffectDef {
 };
 
 fn candidates(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
-    let mask = body.slides();
-    if !body.is_base || !mask.iter().any(|m| *m) {
+    let mask = body.shifts();
+    if !mask.contains(&true) {
         return Vec::new();
     }
     let mut coordinates = vec![Coordinate::level("k", 0.0)];
@@ -54,5 +54,5 @@ fn candidates(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
     columns.extend(Along::each((0..3).filter(|k| mask[*k]).map(|k| 1 + k), 1e-4));
     columns.push(Along::new(4, 1e-3));
     let tether = Candidate::new(body.place(), coordinates).encoded(Encoding::Anchored).screened(&columns);
-    vec![tether.holding((0..3).filter(|k| !mask[*k]).map(|k| 1 + k).collect())]
+    vec![tether.holding((0..3).filter(|k| !mask[*k]).map(|k| 1 + k).collect()).asked_last(!body.is_base)]
 }
