@@ -13,6 +13,7 @@
 use crate::diagnosis::Explained;
 use crate::fit::Fit;
 use crate::judge::Judgement;
+use crate::lost::NEAR;
 use crate::tape::{Tape, judging};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -94,7 +95,10 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
     let is_gain = || all.share() > 0.0 && self::interval(runs, mean_log_gain)[0] > 0.0;
     let helps = (interval[0] > 0.0 || is_gain()) && harmed.is_empty();
     let leaves_little = all.after <= LEFT * LEFT * all.count || all.share() > 1.0 - NEXT_TO_NOTHING;
-    let is_whole = leaves_little && harmed.is_empty() && interval[1] >= 0.0;
+    // Where whole runs were followed before, they have to be followed as well.
+    let whole = judgement.rms_of(tapes, false, judging);
+    let leads_astray = whole.is_some_and(|[before, after]| before < NEAR && after > LEFT && after > HARM * before);
+    let is_whole = leaves_little && harmed.is_empty() && !leads_astray;
     (Explained { share: all.share(), interval, window_s, runs: count, left_out, harmed }, Use { helps, is_whole })
 }
 

@@ -54,7 +54,10 @@ pub(crate) fn seek(
     let candidates = |stage: &Stage<'_>, now: &Fit| {
         let facts = Facts::new(&now.built, tapes).of_parts(&own_parts);
         let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
-        Ok(promising(&locate(stage, plant, now, joints)?, hypotheses(&facts)))
+        let all = hypotheses(&facts);
+        // Numbers that may be off by a tolerance take a force on as far as they can.
+        let is_unique = plant.scenario.tolerance.is_exact();
+        Ok(if is_unique { promising(&locate(stage, plant, now, joints)?, all) } else { all })
     };
     let (rivals, (standing, attempts)) = match flown::found(stage, plant, &standing, (&nominal, &own_parts, window)) {
         Some(flown) => (flown.rivals.clone(), beside_flights(stage, plant, (&nominal, window, flown), &candidates)?),

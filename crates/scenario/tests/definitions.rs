@@ -128,6 +128,36 @@ fn candidates_are_told_in_parameters_of_their_effect() {
     }
 }
 
+/// What a spring and a damper have is looked for from where they stand, and no exponent, which the law would refuse.
+#[test]
+fn a_linear_contact_is_looked_at_without_an_exponent() {
+    let linear = ContactFact { is_linear: true, normal: Some([2e4, 1.0, 60.0]), ..contact() };
+    let of = |name: &str, contact: &ContactFact| find(name).unwrap().identify.candidates.at_contact(contact).remove(0);
+    let [law, other] = [&linear, &contact()].map(|c| of("contact-stiffness", c));
+    assert!(law.held == [1] && law.screens.iter().flat_map(|s| &s.columns).all(|c| c.direction[1] == 0.0));
+    assert!(other.held.is_empty() && other.screens[0].columns.len() == 2);
+    assert_eq!(of("contact-damping", &linear).neutral(), [60.0]);
+}
+
+/// Loads on a link are asked for last, those on a base with all others; a part inside a body that is pushed has a mass that shows.
+#[test]
+fn what_is_asked_last_and_what_shows() {
+    let [base, link] = bodies();
+    let survey = Survey { joints: &[], bodies: &[], contacts: &[], gravity: [0.0; 3], duration: 40.0, lines: &[] };
+    for name in
+        ["linear-drag", "quadratic-drag", "angular-damping", "constant-force", "constant-torque", "tether-stiffness"]
+    {
+        let at = |body: &BodyFact| find(name).unwrap().identify.candidates.at_body(body, &survey);
+        assert!(!at(&link).is_empty() && at(&link).iter().all(|c| c.is_last), "{name}");
+        assert!(!at(&base).is_empty() && at(&base).iter().all(|c| !c.is_last), "{name}");
+    }
+    let slosh = |body: &BodyFact| find("slosh").unwrap().identify.candidates.at_body(body, &survey).remove(0);
+    assert!(slosh(&base).held.is_empty(), "pushed");
+    assert_eq!(slosh(&BodyFact { is_torque_free: true, ..base.clone() }).held, [0], "it tumbles");
+    let flat = BodyFact { mask: [false, false, true, true, true, false], ..base };
+    assert_eq!(slosh(&flat).held, [5], "nothing tells how high it is");
+}
+
 #[test]
 fn nested_laws_are_effects_with_as_many_coordinates() {
     for effect in models() {

@@ -21,6 +21,14 @@ pub struct Force {
 }
 
 impl Force {
+    /// The joint's coordinate on which it acts.
+    pub(crate) fn joint(&self) -> Option<usize> {
+        match self.along {
+            Along::Joint(own) => Some(own),
+            Along::Base(..) => None,
+        }
+    }
+
     /// Whether it is that on a joint's coordinate.
     pub(crate) fn acts_on(&self, coordinate: usize) -> bool {
         matches!(self.along, Along::Joint(own) if own == coordinate)

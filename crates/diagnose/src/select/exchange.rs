@@ -83,6 +83,8 @@ pub(super) fn united(
             // It has a long way to go, for it was found beside less.
             let Ok(glance) = problem.fit(&now, others.with(one, start), LOOK) else { continue };
             let Ok(look) = problem.fit(&glance, glance.set.clone(), LOOK) else { continue };
+            let is_near = criterion(&look, many) - criterion(&now, many) < FAR;
+            let look = if is_near { to_the_end(problem, look) } else { look };
             let costs = criterion(&look, many) - criterion(&now, many);
             let said = format!("  {} in the place of {} others at {place} costs {costs:.1}", one.title(), own.len());
             problem.stage.work.watch.step(&said);
@@ -90,7 +92,7 @@ pub(super) fn united(
                 better = Some(look);
             }
         }
-        now = better.map_or(now, |better| to_the_end(problem, better));
+        now = better.unwrap_or(now);
     }
     now
 }

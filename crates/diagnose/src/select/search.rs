@@ -18,6 +18,7 @@ use crate::fit::{first_sizes, vary};
 use crate::held::holds;
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach, ridge_of};
+use crate::identify::forces::Force;
 use crate::identify::marginal::{Chain, Spread, estimate, score};
 use crate::screen::Score;
 use crate::standing::told;
@@ -375,11 +376,19 @@ fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>, bare: &[Chain
     let is_dull = |place: &str| {
         let own = problem.forces.iter().zip(&rises).filter(|(f, _)| f.place == place);
         let rise = own.map(|(_, rise)| *rise).reduce(f64::max);
-        // What holds passes a joint's force on to where it is held, and numbers that may be off by a tolerance take it on as far as they can.
-        let says = largest > SPEAKING && !holds(&now.built) && problem.plant.scenario.tolerance.is_exact();
+        // What holds passes a joint's force on to where it is held, numbers that may be off by a tolerance take it on as far as they can, and where a
+        // joint is not read (a wheel) its force and its base's are one.
+        let is_unique = !holds(&now.built) && problem.plant.scenario.tolerance.is_exact() && all_read(problem);
+        let says = largest > SPEAKING && is_unique;
         says && place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
     };
     all.into_iter().filter(|h| !is_dull(&h.place)).filter_map(|h| now.set.still_open(h)).collect()
+}
+
+/// Whether some sensor reads every joint that a force may be missing at.
+fn all_read(problem: &Problem<'_>) -> bool {
+    let readings = || problem.stage.tapes.iter().flat_map(|t| &t.readings);
+    problem.forces.iter().filter_map(Force::joint).all(|j| readings().any(|r| r.quantity.motion_of() == Some(j)))
 }
 
 /// What the first looks at all hypotheses beside a fit say.

@@ -103,6 +103,15 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// The joint whose place or speed it is, as an index into `v`.
+    pub fn motion_of(self) -> Option<usize> {
+        use Quantity::{JointLinkPosition, JointLinkVelocity, JointPosition, JointVelocity};
+        match self {
+            JointPosition(v) | JointVelocity(v) | JointLinkPosition(v) | JointLinkVelocity(v) => Some(v),
+            _ => None,
+        }
+    }
+
     /// Whether it is of a joint, by one number.
     pub fn is_joint(self) -> bool {
         use Quantity::{JointEffort, JointLinkPosition, JointLinkVelocity, JointPosition, JointVelocity};
