@@ -115,8 +115,7 @@ pub fn search(
     let found = Found { nominal, best, criteria: [f64::NAN; 2], tried, equals, shown, left: 0.0 };
     let (known, refused) = (first.clone(), Vec::new());
     let ways = Vec::new();
-    let mut search =
-        Search { problem, hypotheses, many, all, numbers, known, refused, ways, smaller: None, is_wide: false, found };
+    let mut search = Search { problem, hypotheses, many, all, numbers, known, refused, ways, smaller: None, found };
     let mut now = match begun {
         Some(begun) => search.forward(begun, 1, None)?,
         None => search.forward(search.found.nominal.clone(), 0, None)?,
@@ -171,8 +170,6 @@ struct Search<'a> {
     ways: Vec<BTreeSet<String>>,
     /// The best of those with fewer effects than what the first round took.
     smaller: Option<Fitted>,
-    /// Whether what is asked last is asked by now.
-    is_wide: bool,
     found: Found,
 }
 
@@ -232,19 +229,14 @@ impl Search<'_> {
     ) -> Result<Option<Fitted>, DiagnoseError> {
         let (problem, round) = (self.problem, bounds.round);
         let (last, first): (Vec<Hypothesis>, Vec<Hypothesis>) = candidates.into_iter().partition(|h| h.is_last);
-        let all = || [first.clone(), last.clone()].concat();
-        let mut looked = look(problem, now, if self.is_wide { all() } else { first.clone() }, room.min(AT_ONCE))?;
-        if !self.is_wide && !last.is_empty() && looked.grown.leaves_much() {
-            problem.stage.work.watch.step("that explains too little: loads on links as well");
-            self.is_wide = true;
-            looked = look(problem, now, all(), room.min(AT_ONCE))?;
-        }
+        let looked = look(problem, now, first.clone(), room.min(AT_ONCE))?;
         if round == 0 {
             (self.found.shown, self.found.left) = (shown(&looked.pool, &looked.grown), looked.grown.left);
         }
         let asked = if round > 0 && !bounds.is_own { HOPE * looked.asked(problem, now, self.all) } else { 0.0 };
         let bounds = Bounds { least: bounds.least.max(asked), ..bounds };
-        let Some((best, smaller)) = fit_sets(problem, now, &looked, bounds, &mut self.found.tried)? else {
+        let fitted = fit_sets(problem, now, &looked, bounds, &mut self.found.tried)?;
+        let Some((best, smaller)) = self.with_the_last(now, (fitted, first, last), room, bounds)? else {
             return Ok(None);
         };
         if round == 0 {
@@ -261,7 +253,38 @@ impl Search<'_> {
         };
         Ok(takes_enough.then_some(best))
     }
+
+    /// The best of what a round has fitted, or of sets with what is asked last where that leaves much of the missing force.
+    fn with_the_last(
+        &mut self,
+        now: &mut Fitted,
+        (fitted, first, last): (Option<Round>, Vec<Hypothesis>, Vec<Hypothesis>),
+        room: usize,
+        bounds: Bounds,
+    ) -> Result<Option<Round>, DiagnoseError> {
+        let Self { problem, many, .. } = *self;
+        let here = problem.power(now);
+        let takes_most = fitted.as_ref().is_some_and(|(best, _)| problem.power(best) < MUCH * here);
+        if last.is_empty() || takes_most || bounds.is_own || remainder(problem, now)?.is_noise() {
+            return Ok(fitted);
+        }
+        problem.stage.work.watch.step("that explains too little: loads on links as well");
+        let mut looked = look(problem, now, [first, last].concat(), room.min(AT_ONCE))?;
+        if bounds.round == 0 {
+            self.found.shown = shown(&looked.pool, &looked.grown);
+        }
+        looked.keep_the_last();
+        let other = fit_sets(problem, now, &looked, bounds, &mut self.found.tried)?;
+        let all = fitted.into_iter().chain(other);
+        Ok(all.min_by(|a, b| criterion(&a.0, many).total_cmp(&criterion(&b.0, many))))
+    }
 }
+
+/// The best of a round's sets, and the best of those with fewer effects.
+type Round = (Fitted, Option<Fitted>);
+
+/// Share of the missing force that is much to leave.
+const MUCH: f64 = 0.1;
 
 /// A fit with many nominal numbers free within what is usual, where those of its findings that are no more than that may stand among them, or where they
 /// take most of what is left: small errors of all numbers together look like no single effect. Tried as long as there are `numbers`.
@@ -405,6 +428,15 @@ pub(super) struct Looked {
 }
 
 impl Looked {
+    /// Without sets of what was looked at before.
+    fn keep_the_last(&mut self) {
+        let Self { pool, grown, spoken, .. } = self;
+        let has_last = |members: &[(usize, Vec<f64>)]| members.iter().any(|m| pool.of(m.0).is_last);
+        grown.sets.retain(|set| has_last(&set.members));
+        spoken.retain(|set| has_last(&set.members));
+        grown.scores.retain(|score| pool.hypotheses[score.hypothesis].is_last);
+    }
+
     /// The least that something gains, −2 log likelihood, which takes its part of what a fit leaves: where forces are known in n intervals a variance
     /// that is smaller by a share φ is a gain of −n ln(1 − φ); a channel that reads with more noise than its sensor has may be quieted as well.
     fn asked(&self, problem: &Problem<'_>, now: &Fitted, all: f64) -> f64 {

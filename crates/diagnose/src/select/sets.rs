@@ -35,16 +35,6 @@ pub struct Grown {
     pub left: f64,
 }
 
-impl Grown {
-    /// Whether even the best set leaves much of what there is.
-    pub fn leaves_much(&self) -> bool {
-        self.sets.iter().all(|set| set.left > MUCH * self.left)
-    }
-}
-
-/// Share of what the model without any leaves that is much.
-const MUCH: f64 = 0.1;
-
 /// What an entry promises beside a set.
 struct Promise {
     entry: usize,
