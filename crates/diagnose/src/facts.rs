@@ -10,7 +10,7 @@ use scenario::effects::facts::Survey;
 use scenario::measure::Quantity;
 use sim::{ActuatorKind, MechanismKind};
 
-pub use scenario::effects::facts::{BodyFact, ContactFact, JointFact, MechanismFact, SensorFact};
+pub use scenario::effects::facts::{ActuatorFact, BodyFact, ContactFact, JointFact, MechanismFact, SensorFact};
 
 /// Places at which effects could act.
 #[derive(Clone, Debug, Default)]
@@ -23,8 +23,8 @@ pub struct Facts {
     pub contacts: Vec<ContactFact>,
     /// Mechanisms.
     pub mechanisms: Vec<MechanismFact>,
-    /// Thrusters, and the largest force that each was asked for, N; zero where commands are only on and off.
-    pub thrusters: Vec<(String, f64)>,
+    /// Thrusters.
+    pub thrusters: Vec<ActuatorFact>,
     /// What was measured.
     pub sensors: Vec<SensorFact>,
     /// Acceleration of gravity, m/s², W axes.
@@ -269,8 +269,8 @@ fn normal_numbers(normal: &Normal) -> Option<[f64; 3]> {
     }
 }
 
-fn thrusters(built: &Built, tapes: &[Tape]) -> Vec<(String, f64)> {
-    let largest = |(actuator, force): (usize, f64)| {
+fn thrusters(built: &Built, tapes: &[Tape]) -> Vec<ActuatorFact> {
+    let largest = |actuator: usize, force: f64| {
         let own = tapes.iter().flat_map(|t| &t.commands).filter(move |c| c.actuator == actuator);
         let values = || own.clone().flat_map(|c| &c.values);
         let is_graded = values().any(|v| *v > SHUT * force && *v < (1.0 - SHUT) * force);
@@ -278,7 +278,11 @@ fn thrusters(built: &Built, tapes: &[Tape]) -> Vec<(String, f64)> {
     };
     let all = built.model.actuators.iter().enumerate();
     all.filter_map(|(i, a)| match a.kind {
-        ActuatorKind::Thruster { max_force, .. } => Some((a.name.clone(), largest((i, max_force)))),
+        ActuatorKind::Thruster { max_force, .. } => Some(ActuatorFact {
+            place: format!("actuator:{}", a.name),
+            largest_command: largest(i, max_force),
+            is_thruster: true,
+        }),
         ActuatorKind::JointEffort { .. } | ActuatorKind::JointDrive { .. } | ActuatorKind::LatchRelease { .. } => None,
     })
     .collect()

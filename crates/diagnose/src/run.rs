@@ -30,7 +30,7 @@ use crate::noise::{self, Noise};
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::Pace;
-use crate::share::{self, Use};
+use crate::share::{self, NEXT_TO_NOTHING, Use};
 use crate::sought::{Sought, seek};
 use crate::standing::{Standing, fit_in_turns, follow_with};
 use crate::stretches::{cut, joined};
@@ -69,7 +69,6 @@ pub(crate) struct Findings {
 
 /// Error (units of noise) and share of the mismatch up to which what a corrected model leaves may be the errors of its own steps and starts.
 const RIGHT: f64 = 1.1;
-const NEXT_TO_NOTHING: f64 = 0.01;
 /// Diagnoses; `watch` hears how it goes.
 ///
 /// A search begins in windows. Where one length of them leads to nothing that explains most of the mismatch another is tried, unless the

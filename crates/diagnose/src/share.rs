@@ -28,7 +28,7 @@ const TAIL: f64 = 0.025;
 const HARM: f64 = 1.2;
 /// Error in windows (units of noise) and share of the mismatch up to which what is left on runs that were left out is no second explanation's.
 const LEFT: f64 = 1.5;
-const NEXT_TO_NOTHING: f64 = 0.01;
+pub(crate) const NEXT_TO_NOTHING: f64 = 0.01;
 /// The same in standard deviations of what noise alone leaves.
 const SIGMAS: f64 = 4.0;
 

@@ -96,8 +96,14 @@ impl Tape {
     /// Matches a run's channels with the scenario's quantities.
     ///
     /// Channels that the scenario does not know are errors; those that only tell what was commanded or driven are inputs.
-    pub fn new(set: &RecordingSet, run: &RecordedRun, plant: &Plant, model: &Model) -> Result<Self, DiagnoseError> {
-        let in_newtons = unheard::has_thrusts(set, plant, model);
+    /// Commands of thrusters are shares of their force, or that force itself (`in_newtons`).
+    pub fn new(
+        set: &RecordingSet,
+        run: &RecordedRun,
+        plant: &Plant,
+        model: &Model,
+        in_newtons: bool,
+    ) -> Result<Self, DiagnoseError> {
         let refuse = |error: MeasureError| DiagnoseError::Channel {
             channel: error.channel,
             file: run.file.clone(),
@@ -113,7 +119,6 @@ impl Tape {
             }
             if let Some(found) = plant.actuator(model, beside.as_deref().unwrap_or(&series.channel)) {
                 let (actuator, what, unit) = found.map_err(refuse)?;
-                // Shares of a thruster's force, or that force itself.
                 let unit = if in_newtons { 1.0 } else { unit };
                 let values = series.values.iter().map(|v| v * unit).collect();
                 commands.push(CommandTape { actuator, what, times: series.times.to_vec(), values });
@@ -224,8 +229,9 @@ fn lateness(built: &Built, reading: &Reading) -> f64 {
 /// The runs and the nominal model, the plant told what is read and driven.
 pub(crate) fn load(plant: &mut Plant, set: &RecordingSet) -> Result<(Vec<Tape>, Built), DiagnoseError> {
     let built = plant.build(&[])?;
-    let tapes: Vec<Tape> =
-        set.runs.iter().map(|run| Tape::new(set, run, plant, &built.model)).collect::<Result<_, _>>()?;
+    let in_newtons = unheard::has_thrusts(set, plant, &built.model);
+    let of = |run| Tape::new(set, run, plant, &built.model, in_newtons);
+    let tapes: Vec<Tape> = set.runs.iter().map(of).collect::<Result<_, _>>()?;
     let mut channels: Vec<String> = tapes.iter().flat_map(|t| t.readings.iter().map(|r| r.channel.clone())).collect();
     channels.sort();
     channels.dedup();

@@ -54,12 +54,7 @@ fn actuators(facts: &Facts) -> Vec<ActuatorFact> {
         largest_command: joint.largest_command,
         is_thruster: false,
     });
-    let together = (facts.thrusters.len() > 1).then_some(("*", 0.0));
-    let names = facts.thrusters.iter().map(|(name, largest)| (name.as_str(), *largest)).chain(together);
-    let thruster = |(name, largest_command): (&str, f64)| ActuatorFact {
-        place: format!("actuator:{name}"),
-        largest_command,
-        is_thruster: true,
-    };
-    drive.chain(names.map(thruster)).collect()
+    let all = || ActuatorFact { place: "actuator:*".to_owned(), largest_command: 0.0, is_thruster: true };
+    let together = (facts.thrusters.len() > 1).then(all);
+    drive.chain(facts.thrusters.iter().cloned()).chain(together).collect()
 }

@@ -31,7 +31,7 @@ impl Force {
 
     /// Whether it is that on a joint's coordinate.
     pub(crate) fn acts_on(&self, coordinate: usize) -> bool {
-        matches!(self.along, Along::Joint(own) if own == coordinate)
+        self.joint() == Some(coordinate)
     }
 }
 

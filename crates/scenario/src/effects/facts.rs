@@ -145,12 +145,6 @@ impl BodyFact {
         std::array::from_fn(|k| if self.is_base { self.mask[k] } else { self.is_on_joints })
     }
 
-    /// Axes about which it can turn as a base, by number.
-    pub fn turning(&self) -> impl Iterator<Item = usize> {
-        let mask = self.mask;
-        (0..3).filter(move |k| mask[*k])
-    }
-
     /// Whether it is a base that can turn.
     pub fn can_turn(&self) -> bool {
         self.is_base && self.turns().iter().any(|m| *m)

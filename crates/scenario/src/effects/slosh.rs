@@ -63,7 +63,8 @@ fn candidates(body: &BodyFact, survey: &Survey<'_>) -> Vec<Candidate> {
     let position = Coordinate::vector(["position[0]", "position[1]", "position[2]"], [0.0; 3]);
     coordinates.extend(position.into_iter().map(|c| c.within([-10.0, 10.0])));
     // In a plane nothing tells how high it is.
-    let flat = (0..3).filter(|k| !body.slides()[*k] && body.turning().eq([*k]));
+    let turns_alone_about = |k: usize| (0..3).all(|j| body.turns()[j] == (j == k));
+    let flat = (0..3).filter(|k| !body.slides()[*k] && turns_alone_about(*k));
     let held: Vec<usize> = flat.map(|k| 3 + k).collect();
     // A tumble shows m p pᵀ, so that the mass alone stays as it is; what is pushed shows m and m p too.
     let (places, held) = match body.is_pushed() {
