@@ -10,37 +10,12 @@
 //! What is *stored* is a function of the state ([`crate::Energy`]). Forces that act and books that are kept take different
 //! ways from the laws, so that a force that is not what its law says of itself leaves a balance that no step closes.
 
-use crate::actuator::CoordinatePoint;
-use crate::contacts::Touch;
-use crate::effect::{self, Acting};
-use crate::force;
-use crate::model::{Model, PairLaw};
+use crate::forces::{Acting, Passage, effects, own};
+use crate::model::Model;
+use crate::parts::PairLaw;
 use crate::state::{ContactMemory, State};
-use crate::workspace::Workspace;
+use crate::workspace::{Touch, Workspace};
 use spatial::{Twist, Vec3, Wrench};
-
-/// What one thruster does to its body, about the anchor of the body's vehicle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Thrust {
-    pub actuator: usize,
-    pub body: usize,
-    pub wrench: Wrench,
-}
-
-/// How a coordinate passes through a step, or through a stage per second.
-pub(crate) struct Passage {
-    /// Where effects with memory are evaluated, and when, s.
-    pub point: CoordinatePoint,
-    pub time: f64,
-    /// Position at mid-way and rate; the displacement is the rate times `elapsed`.
-    pub q: f64,
-    pub rate: f64,
-    pub elapsed: f64,
-    /// Deflection of a gear at mid-way, and its rate.
-    pub gear: [f64; 2],
-    /// What the motor's speed limit left of its effort, where it is at that limit.
-    pub limited: Option<f64>,
-}
 
 /// Twist of a body about its vehicle's anchor, with which the scheme displaces it: gains are spatial, those of the velocity field
 /// at a place fixed in W, and the base moves on meanwhile; ½ h ω × v of it on the mean.
@@ -67,8 +42,8 @@ pub(crate) fn add_external(model: &Model, state: &mut State, ws: &Workspace, h: 
     for thrust in &ws.thrusts {
         state.works[thrust.actuator] += h * displacing_twist(model, ws, thrust.body).dot(&thrust.wrench);
     }
-    effect::add_works(model, state, ws, |body| displacing_twist(model, ws, body), h);
-    force::add_works(model, state, ws, |body| displacing_twist(model, ws, body), h);
+    effects::add_works(model, state, ws, |body| displacing_twist(model, ws, body), h);
+    own::add_works(model, state, ws, |body| displacing_twist(model, ws, body), h);
 }
 
 /// Work and loss of a touching point, whose bodies gained `gain` against each other.
@@ -156,41 +131,4 @@ pub(crate) fn add_coordinates(model: &Model, state: &mut State, ws: &Workspace) 
     }
     state.works = works;
     state.account.joint_loss += loss;
-}
-
-impl Passage {
-    fn over_step(model: &Model, state: &State, ws: &Workspace, i: usize) -> Self {
-        let (h, coordinate) = (ws.step, &model.coordinates[i]);
-        let start = ws.q_start[coordinate.q_index];
-        let moved = state.q[coordinate.q_index] - start;
-        let (q, rate) = (start + 0.5 * moved, moved / h);
-        let last = &ws.coordinate_points[i];
-        let half = CoordinatePoint { elapsed: 0.5 * h, ..*last };
-        let point =
-            CoordinatePoint { q_base: q, moved_base: 0.5 * moved, v_start: rate, beta: 0.0, theta: 0.0, ..half };
-        let gear = coordinate.series.map_or([0.0; 2], |index| {
-            let at = model.effects.memory(index).start;
-            let [from, to] = [ws.effects_start[at], state.effects[at]];
-            [0.5 * (from + to), (to - from) / h]
-        });
-        let limited = find_limited(ws, i);
-        Self { point, time: ws.end - 0.5 * h, q, rate, elapsed: h, gear, limited }
-    }
-
-    fn of_stage(model: &Model, state: &State, ws: &Workspace, i: usize) -> Self {
-        let coordinate = &model.coordinates[i];
-        let gear = coordinate.series.map_or([0.0; 2], |index| {
-            let at = model.effects.memory(index).start;
-            [state.effects[at], state.effects[at + 1]]
-        });
-        let (q, rate) = (state.q[coordinate.q_index], state.v[i]);
-        let limited = find_limited(ws, i);
-        Self { point: ws.coordinate_points[i], time: state.time, q, rate, elapsed: 1.0, gear, limited }
-    }
-}
-
-/// The effort that a motor at its speed limit gave.
-fn find_limited(ws: &Workspace, i: usize) -> Option<f64> {
-    let force = &ws.coordinate_forces[i];
-    force.is_limited.then_some(force.driven)
 }

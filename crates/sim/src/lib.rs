@@ -24,51 +24,30 @@
 //! Integrators: [`Integrator`]. Sources: Anitescu and Potra 1997 for the linearly implicit contact step; Featherstone
 //! 2008 for the tree algorithms; Liang, Fillmore and Ma 2012 for the bristle.
 
-mod account;
-mod actuator;
 mod books;
-mod contacts;
-mod cut;
-mod dead_weight;
-mod drive;
-mod effect;
-mod energy;
-mod environment;
 mod error;
-mod force;
-mod mechanism;
-mod meet;
+mod forces;
 mod model;
-mod pivots;
-mod push;
-mod rk4;
-mod rk4_bristle;
-mod run;
+mod parts;
+mod schemes;
 mod solve;
-mod speed_limit;
 mod state;
-mod step;
-mod weight;
 mod workspace;
 mod world;
 
-pub use account::MomentumAudit;
-pub use actuator::{Actuator, ActuatorKind, Command, Coordinate};
-pub use drive::{Drive, DriveAxis, DrivePath, Motion};
-pub use effect::{
-    Appendage, Axes, BodyAction, BodyEffect, BodyLaw, BodyMotion, BodyPlace, DryFriction, DryLevel, Effect, EffectKind,
-    JointEffect, JointLaw, LineEffect, LineLaw, Load, MemorySlot, REACH, Series, Slosh, Sphere, memory_layout,
-};
-pub use energy::{Energy, EnergyAudit, EnergyBalance, Works};
-pub use environment::Environment;
 pub use error::{ModelError, StepError};
-pub use force::Force;
-pub use mechanism::{
-    Anchor, Bushing, Capture, Latch, Mechanism, MechanismKind, MechanismMemory, MechanismReport, MechanismStatus,
-    Overload, PullIn, Side, Strength, Strut, StrutSides, Weld,
+pub use forces::MechanismReport;
+pub use model::{Integrator, MemorySlot, Model, ModelSpec, ShapeSpec, memory_layout};
+pub use parts::{
+    Actuator, ActuatorKind, Anchor, Appendage, Axes, Base, BodyAction, BodyEffect, BodyLaw, BodyMotion, BodyPlace,
+    Bushing, Capture, Command, Coordinate, Drive, DriveAxis, DrivePath, DryFriction, DryLevel, Effect, EffectKind,
+    Environment, Force, Grain, JointEffect, JointLaw, Latch, LineEffect, LineLaw, Load, Mechanism, MechanismKind,
+    MechanismMemory, MechanismStatus, Motion, Overload, PairLaw, PullIn, Push, REACH, Series, Side, Slosh, Sphere,
+    Strength, Strut, StrutSides, Vehicle, VehicleSpec, Weld,
 };
-pub use model::{Base, Grain, Integrator, Model, ModelSpec, PairLaw, ShapeSpec, Vehicle, VehicleSpec};
-pub use push::Push;
-pub use run::{Controller, Flow, Known, Measured, NoControl, Observer, Perception};
 pub use state::{Account, ContactMemory, Pending, State, Work};
-pub use world::{Rest, TouchReport, World};
+pub use workspace::Rest;
+pub use world::{
+    Controller, Energy, EnergyAudit, EnergyBalance, Flow, Known, Measured, MomentumAudit, NoControl, Observer,
+    Perception, TouchReport, Works, World,
+};

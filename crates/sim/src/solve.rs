@@ -7,53 +7,13 @@
 //! itself (Cholesky's method without roots, upper triangle, row-major: inner loops run along rows and keep one order of
 //! addition). Below the diagonal the matrix is neither written nor read.
 
-use crate::contacts::Touch;
-use crate::mechanism::{self, Coupling};
+use crate::forces::{mechanisms, pivots};
 use crate::model::Model;
-use crate::pivots;
-use crate::workspace::Workspace;
+use crate::workspace::{Coupling, HELD, Islands, LANES, Touch, Workspace, padded};
 use spatial::{Mat3, SpatialMatrix, Twist, Vec3, Wrench};
 use std::cmp::Ordering;
 
-/// Row of a body's freedom that its base's guide holds.
-const HELD: usize = usize::MAX;
-
-/// The islands of this step and the storage of their systems.
-#[derive(Clone, Debug)]
-pub(crate) struct Islands {
-    /// Island's representative, by vehicle.
-    group: Vec<usize>,
-    /// Per vehicle: row in its island's system of base freedoms and coordinates (`HELD` where there is none).
-    rows: Vec<Vec<usize>>,
-    /// Per representative: size and start in `matrix`.
-    size: Vec<usize>,
-    start: Vec<usize>,
-    matrix: Vec<f64>,
-    rhs: Vec<Vec<f64>>,
-    scratch: Vec<f64>,
-    /// S_ab of the pairs of bodies that touch.
-    cross: Vec<([usize; 2], SpatialMatrix)>,
-    /// Whether vehicles without joints are left out.
-    leaves_rigid: bool,
-}
-
 impl Islands {
-    pub fn new(model: &Model) -> Self {
-        let n: usize = model.vehicles.iter().map(|v| 6 + v.tree.nv).sum();
-        let largest = model.vehicles.iter().map(|v| 6 + v.tree.nv).max().unwrap_or(0);
-        Self {
-            group: vec![0; model.vehicles.len()],
-            rows: model.vehicles.iter().map(|v| vec![HELD; 6 + v.tree.nv]).collect(),
-            size: vec![0; model.vehicles.len()],
-            start: vec![0; model.vehicles.len()],
-            matrix: vec![0.0; n * (n + LANES)],
-            rhs: model.vehicles.iter().map(|_| Vec::with_capacity(n)).collect(),
-            scratch: vec![0.0; largest * largest],
-            cross: Vec::new(),
-            leaves_rigid: false,
-        }
-    }
-
     /// Groups the vehicles that act on each other within the step and numbers their freedoms.
     pub fn regroup(&mut self, model: &Model, touches: &[Touch], couplings: &[Coupling]) {
         for (i, group) in self.group.iter_mut().enumerate() {
@@ -95,7 +55,7 @@ pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
         ws.extra.fill(None);
     }
     add_touches(model, ws);
-    mechanism::add_stiffness(model, ws, h);
+    mechanisms::add_stiffness(model, ws, h);
     pivots::add_stiffness(model, ws, h);
     ws.islands.regroup(model, &ws.touches, &ws.couplings);
     for i in 0..model.vehicles.len() {
@@ -106,7 +66,7 @@ pub(crate) fn factor(model: &Model, ws: &mut Workspace, h: f64) -> bool {
         add_cross(model, ws, bodies, &coupling);
     }
     for k in 0..ws.couplings.len() {
-        if let Some(([a, b], coupling)) = mechanism::calc_cross(model, ws, k, h) {
+        if let Some(([a, b], coupling)) = mechanisms::calc_cross(model, ws, k, h) {
             add_cross(model, ws, [a, b], &coupling);
         }
     }
@@ -301,7 +261,7 @@ pub(crate) fn solve(model: &Model, ws: &mut Workspace, h: f64) {
             }
         }
     }
-    mechanism::add_wrenches(model, ws);
+    mechanisms::add_wrenches(model, ws);
     pivots::add_moments(model, ws);
     for i in 0..model.vehicles.len() {
         write_rhs(model, ws, i, h);
@@ -371,15 +331,9 @@ fn read_gains(model: &Model, ws: &mut Workspace, i: usize) {
     }
 }
 
-/// Columns that are summed in registers at a time; rows are padded to a multiple of the fewest.
-const LANES: usize = 8;
 const WIDER: usize = 2 * LANES;
-const WIDEST: usize = 3 * LANES;
 
-/// Length of a padded row.
-fn padded(n: usize) -> usize {
-    n.next_multiple_of(LANES)
-}
+const WIDEST: usize = 3 * LANES;
 
 /// A = WᵀP⁻¹W in place: W upper triangular, P its diagonal of pivots, of which the inverse is left there; `n` rows of
 /// `padded(n)`. (Of UᵀU, U = P^−½ W: here no root stands between a row and the next.)

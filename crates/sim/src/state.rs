@@ -4,8 +4,8 @@
 //!   V_B = I_lock⁻¹ (h − Σ I_i V_i^rel),    h = (L − x_B × p, p),
 //! so that poses and twists carry exactly (p, L), and only forces from outside can change them.
 
-use crate::mechanism::MechanismMemory;
 use crate::model::Model;
+use crate::parts::{Command, MechanismMemory};
 use serde::{Deserialize, Serialize};
 use spatial::{Pose, Vec3, Wrench};
 
@@ -41,7 +41,7 @@ pub struct State {
     pub is_settled: bool,
     /// Commands that act on actuators with a delay; empty before the first step, and where no effect delays one.
     #[serde(default)]
-    pub acting: Vec<crate::Command>,
+    pub acting: Vec<Command>,
     /// Commands that were given and do not act yet.
     #[serde(default)]
     pub pending: Vec<Pending>,
@@ -51,7 +51,7 @@ pub struct State {
     #[serde(default)]
     pub perception: Vec<f64>,
     /// The commands that act at present.
-    pub commands: Vec<crate::Command>,
+    pub commands: Vec<Command>,
     /// What came from outside since the start, and what became of it.
     pub account: Account,
     /// Work since the start of every actuator, drive and effect, J, in the model's order: see [`crate::World::works`].
@@ -69,7 +69,7 @@ pub struct Pending {
     /// When it acts, s.
     pub time: f64,
     /// The command.
-    pub command: crate::Command,
+    pub command: Command,
 }
 
 /// The bristle of one touching point.
@@ -163,7 +163,7 @@ impl State {
             pending: Vec::new(),
             controller: Vec::new(),
             perception: Vec::new(),
-            commands: vec![crate::Command::default(); model.actuators.len()],
+            commands: vec![Command::default(); model.actuators.len()],
             account: Account::default(),
             works: vec![0.0; model.n_works()],
             work: Work::default(),

@@ -13,7 +13,7 @@ pub static ACTUATOR_DELAY: EffectDef = EffectDef {
     places: &[PlaceKind::Joint, PlaceKind::Actuator],
     parameters: &[zero("delay", AT_LEAST_ZERO, S, "time from a command to its action")],
     equation: "acting command(t) = command(t − delay); the first command acts until its successor's delayed instant.",
-    source: "Held commands, solved exactly; law in `crates/sim/src/effect/line.rs`.",
+    source: "Held commands, solved exactly; law in `crates/sim/src/parts/effect/line.rs`.",
     build: Build::Command(|entry| LineLaw::Delay(entry.number("delay"))),
     identify: Identify {
         candidates: Candidates::Actuator(candidates),

@@ -13,7 +13,7 @@ pub static ACTUATOR_GAIN: EffectDef = EffectDef {
     places: &[PlaceKind::Joint, PlaceKind::Actuator],
     parameters: &[zero("gain", ANY, NONE, "delivered over commanded").neutral_at(1.0)],
     equation: "delivered = gain × commanded, after the actuator's own limit; gains of several entries multiply.",
-    source: "Held commands, solved exactly; law in `crates/sim/src/effect/line.rs`.",
+    source: "Held commands, solved exactly; law in `crates/sim/src/parts/effect/line.rs`.",
     build: Build::Command(|entry| LineLaw::Gain(entry.number("gain"))),
     identify: Identify {
         candidates: Candidates::Actuator(|actuator| {

@@ -13,7 +13,7 @@ pub static ACTUATOR_LAG: EffectDef = EffectDef {
     places: &[PlaceKind::Joint, PlaceKind::Actuator],
     parameters: &[zero("time_constant", AT_LEAST_ZERO, S, "time in which the output makes 63 % of a change")],
     equation: "T ė = commanded − e with T = time_constant; e is delivered. A run begins with e settled on its first command.",
-    source: "Held commands, solved exactly; law in `crates/sim/src/effect/line.rs`.",
+    source: "Held commands, solved exactly; law in `crates/sim/src/parts/effect/line.rs`.",
     build: Build::Command(|entry| LineLaw::Lag(entry.number("time_constant"))),
     identify: Identify {
         candidates: Candidates::Actuator(candidates),

@@ -13,7 +13,7 @@ pub static ACTUATOR_SATURATION: EffectDef = EffectDef {
     places: &[PlaceKind::Joint, PlaceKind::Actuator],
     parameters: &[zero("limit", AT_LEAST_ZERO, EFFORT, "largest output, either way").neutral_at(f64::INFINITY)],
     equation: "output = what would be delivered, within ±limit; the smallest limit of several entries holds.",
-    source: "Held commands, solved exactly; law in `crates/sim/src/effect/line.rs`.",
+    source: "Held commands, solved exactly; law in `crates/sim/src/parts/effect/line.rs`.",
     build: Build::Command(|entry| LineLaw::Saturation(entry.number("limit"))),
     identify: Identify {
         candidates: Candidates::Actuator(candidates),

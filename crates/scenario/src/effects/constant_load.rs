@@ -16,7 +16,7 @@ pub static CONSTANT_FORCE: EffectDef = EffectDef {
     places: &[PlaceKind::Body],
     parameters: &[zero("vector", ANY, N, "force").vector(), choice("frame", &FRAMES, "axes in which it is constant")],
     equation: "vector at the centre of mass of the rigid body, constant in the axes of the body or of the world.",
-    source: "None needed; law in `crates/sim/src/effect/body/load.rs`.",
+    source: "None needed; law in `crates/sim/src/parts/effect/body/load.rs`.",
     build: Build::Load(|entry| Load::ConstantForce { vector: entry.vector("vector"), axes: axes(entry) }),
     identify: Identify {
         candidates: Candidates::Body(force),
@@ -43,7 +43,7 @@ pub static CONSTANT_TORQUE: EffectDef = EffectDef {
         choice("frame", &FRAMES, "axes in which it is constant"),
     ],
     equation: "The couple vector, constant in the axes of the body or of the world.",
-    source: "None needed; law in `crates/sim/src/effect/body/load.rs`.",
+    source: "None needed; law in `crates/sim/src/parts/effect/body/load.rs`.",
     build: Build::Load(|entry| Load::ConstantTorque { vector: entry.vector("vector"), axes: axes(entry) }),
     identify: Identify {
         candidates: Candidates::Body(torque),

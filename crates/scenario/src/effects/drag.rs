@@ -13,7 +13,7 @@ pub static LINEAR_DRAG: EffectDef = EffectDef {
     places: &[PlaceKind::Body],
     parameters: &[zero("c", AT_LEAST_ZERO, N_S_PER_M, "force over speed")],
     equation: "−c v at the centre of mass, v its velocity in the world frame.",
-    source: "Laminar drag; law in `crates/sim/src/effect/body/load.rs`.",
+    source: "Laminar drag; law in `crates/sim/src/parts/effect/body/load.rs`.",
     build: Build::Load(|entry| Load::LinearDrag { c: entry.number("c") }),
     identify: Identify {
         candidates: Candidates::Body(|body, survey| {
@@ -40,7 +40,7 @@ pub static QUADRATIC_DRAG: EffectDef = EffectDef {
     places: &[PlaceKind::Body],
     parameters: &[zero("c", AT_LEAST_ZERO, N_S2_PER_M2, "force over the square of speed")],
     equation: "−c ‖v‖ v at the centre of mass, v its velocity in the world frame.",
-    source: "Turbulent drag; law in `crates/sim/src/effect/body/load.rs`.",
+    source: "Turbulent drag; law in `crates/sim/src/parts/effect/body/load.rs`.",
     build: Build::Load(|entry| Load::QuadraticDrag { c: entry.number("c") }),
     identify: Identify {
         candidates: Candidates::Body(|body, _| if slides(body) { damped(body, 1e-4) } else { Vec::new() }),
@@ -64,7 +64,7 @@ pub static ANGULAR_DAMPING: EffectDef = EffectDef {
     places: &[PlaceKind::Body],
     parameters: &[zero("c", AT_LEAST_ZERO, N_M_S_PER_RAD, "torque over angular velocity").with_inertia(1.0)],
     equation: "−c ω, ω against the inertial frame: eddy currents, air.",
-    source: "None needed; law in `crates/sim/src/effect/body/load.rs`.",
+    source: "None needed; law in `crates/sim/src/parts/effect/body/load.rs`.",
     build: Build::Load(|entry| Load::AngularDamping { c: entry.number("c") }),
     identify: Identify {
         candidates: Candidates::Body(|body, _| if turns(body) { damped(body, 1e-5) } else { Vec::new() }),

@@ -23,7 +23,7 @@ pub static FLEXIBLE_APPENDAGE: EffectDef = EffectDef {
     ],
     equation: "η̈ + 2 ζ Ω η̇ + Ω² η = −δ·ω̇ and δ η̈ in the balance of torques; angular momentum I ω + δ η̇. The body's nominal inertia I holds the mode locked. \
                Several modes are several entries.",
-    source: "Hybrid coordinates, Likins 1970; law in `crates/sim/src/effect/body/appendage.rs`.",
+    source: "Hybrid coordinates, Likins 1970; law in `crates/sim/src/parts/effect/body/appendage.rs`.",
     build: Build::Part(PartBuild {
         size: "coupling",
         take_out: |entry, own, _| own.without_mode(&entry.vector("coupling")),

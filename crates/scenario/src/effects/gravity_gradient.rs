@@ -13,7 +13,7 @@ pub static GRAVITY_GRADIENT: EffectDef = EffectDef {
     places: &[PlaceKind::Body],
     parameters: &[zero("mean_motion", AT_LEAST_ZERO, RAD_PER_S, "n: mean motion of the orbit")],
     equation: "3 n² r̂ × (I r̂) with r̂ = (cos nt, sin nt, 0) in the world frame: x towards the zenith at t = 0, z along the orbit's normal. The torque alone.",
-    source: "A small body on a circular orbit, Hughes 1986, section 8.1; law in `crates/sim/src/effect/body/load.rs`.",
+    source: "A small body on a circular orbit, Hughes 1986, section 8.1; law in `crates/sim/src/parts/effect/body/load.rs`.",
     build: Build::Load(|entry| Load::GravityGradient { mean_motion: entry.number("mean_motion") }),
     identify: Identify {
         candidates: Candidates::Body(candidates),

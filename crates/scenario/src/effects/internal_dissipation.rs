@@ -17,7 +17,7 @@ pub static INTERNAL_DISSIPATION: EffectDef = EffectDef {
         zero("c", AT_LEAST_ZERO, N_M_S_PER_RAD, "torque over the difference of angular velocities").with_inertia(1.0),
     ],
     equation: "i_damper ω̇_s = c (ω − ω_s), the opposite torque on the body, whose own inertia is smaller by i_damper.",
-    source: "The viscous damper of Hughes 1986, in its isotropic form; law in `crates/sim/src/effect/body/sphere.rs`.",
+    source: "The viscous damper of Hughes 1986, in its isotropic form; law in `crates/sim/src/parts/effect/body/sphere.rs`.",
     build: Build::Part(PartBuild {
         size: "i_damper",
         take_out: |entry, own, _| own.without_sphere(entry.number("i_damper")),

@@ -17,7 +17,7 @@ pub static JOINT_CABLE_STIFFNESS: EffectDef = EffectDef {
         shape("q_rest", ANY, PLACE, "position without pull").optional(),
     ],
     equation: "−k (q − q_rest).",
-    source: "A harness taken as linear; law in `crates/sim/src/effect/joint.rs`.",
+    source: "A harness taken as linear; law in `crates/sim/src/parts/effect/joint.rs`.",
     build: Build::Effort(|entry| JointLaw::Cable { stiffness: entry.number("k"), rest: entry.number("q_rest") }),
     identify: Identify {
         candidates: Candidates::Joint(|joint, _| {

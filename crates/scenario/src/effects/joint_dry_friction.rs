@@ -12,7 +12,7 @@ use sim::{DryFriction, DryLevel, JointLaw, REACH};
 use unit::{EFFORT, PLACE, RATE};
 
 const SOURCE: &str = "Dahl 1968; falling levels after Stribeck, as in Armstrong-Hélouvry, Dupont and Canudas de Wit 1994; \
-                      law in `crates/sim/src/effect/joint.rs`.";
+                      law in `crates/sim/src/parts/effect/joint.rs`.";
 
 /// z₀.
 const Z_0: Parameter =

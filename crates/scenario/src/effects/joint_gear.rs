@@ -9,7 +9,7 @@ use parameter::{AT_LEAST_ZERO, POSITIVE, zero};
 use unit::{DAMPING, PLACE, STIFFNESS};
 
 const SOURCE: &str = "Elastic joints after Spong 1987; play as a dead zone in series, after Nordin and Gutman 2002; \
-                      law in `crates/sim/src/effect/series.rs`.";
+                      law in `crates/sim/src/parts/effect/series.rs`.";
 
 /// With a spring.
 pub static JOINT_ELASTICITY: EffectDef = EffectDef {

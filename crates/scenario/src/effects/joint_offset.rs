@@ -14,7 +14,7 @@ pub static JOINT_OFFSET: EffectDef = EffectDef {
     places: &[PlaceKind::Joint],
     parameters: &[zero("effort", ANY, EFFORT, "effort in the joint's positive direction")],
     equation: "effort, always.",
-    source: "None needed; law in `crates/sim/src/effect/joint.rs`.",
+    source: "None needed; law in `crates/sim/src/parts/effect/joint.rs`.",
     build: Build::Effort(|entry| JointLaw::Offset { effort: entry.number("effort") }),
     identify: Identify {
         candidates: Candidates::Joint(|joint, _| {

@@ -18,7 +18,7 @@ pub static JOINT_TORQUE_RIPPLE: EffectDef = EffectDef {
         shape("phase", ANY, RAD, "phase at q = 0").optional(),
     ],
     equation: "amplitude · sin(order q + phase).",
-    source: "Fourier component of cogging; law in `crates/sim/src/effect/joint.rs`.",
+    source: "Fourier component of cogging; law in `crates/sim/src/parts/effect/joint.rs`.",
     build: Build::Effort(|entry| {
         let number = |name: &str| entry.number(name);
         JointLaw::Ripple { amplitude: number("amplitude"), order: number("order"), phase: number("phase") }

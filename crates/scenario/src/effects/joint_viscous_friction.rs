@@ -7,7 +7,7 @@ use sim::JointLaw;
 use unit::{DAMPING, DRAG};
 
 const SOURCE: &str = "Armstrong-Hélouvry, Dupont and Canudas de Wit 1994, the survey of friction models; \
-                      law in `crates/sim/src/effect/joint.rs`.";
+                      law in `crates/sim/src/parts/effect/joint.rs`.";
 
 /// −b q̇.
 pub static JOINT_VISCOUS_FRICTION: EffectDef = EffectDef {
@@ -71,7 +71,7 @@ pub static JOINT_QUADRATIC_FRICTION: EffectDef = EffectDef {
     places: &[PlaceKind::Joint],
     parameters: &[zero("b_2", AT_LEAST_ZERO, DRAG, "effort over the square of the rate")],
     equation: "−b_2 |q̇| q̇.",
-    source: "Turbulent drag, by dimension; law in `crates/sim/src/effect/joint.rs`.",
+    source: "Turbulent drag, by dimension; law in `crates/sim/src/parts/effect/joint.rs`.",
     build: Build::Effort(|entry| JointLaw::Quadratic { drag: entry.number("b_2") }),
     identify: Identify {
         candidates: Candidates::Joint(|joint, _| each_screened(joint, &["b_2"])),

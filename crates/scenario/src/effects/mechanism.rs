@@ -16,7 +16,7 @@ pub static MECHANISM_STIFFNESS: EffectDef = EffectDef {
     places: &[PlaceKind::Mechanism],
     parameters: &[zero("factor", POSITIVE, NONE, "true over nominal, of all its springs").neutral_at(1.0)],
     equation: "k → factor · k, of a strut along its line, of a bushing, a latch's hold or a weld along and about every axis; stops and preload stay.",
-    source: "A linear law scaled; laws in `crates/sim/src/mechanism`.",
+    source: "A linear law scaled; laws in `crates/sim/src/parts/mechanism`.",
     build: Build::Mechanism(|entry, kind| {
         let factor = entry.number("factor");
         if let MechanismKind::Strut(strut) = kind {
@@ -49,7 +49,7 @@ pub static MECHANISM_DAMPING: EffectDef = EffectDef {
     places: &[PlaceKind::Mechanism],
     parameters: &[zero("factor", AT_LEAST_ZERO, NONE, "true over nominal, of all its dampers").neutral_at(1.0)],
     equation: "c → factor · c, of a strut along its line, of a bushing, a latch's hold or a weld along and about every axis; a stop's dissipation stays.",
-    source: "A linear law scaled; laws in `crates/sim/src/mechanism`.",
+    source: "A linear law scaled; laws in `crates/sim/src/parts/mechanism`.",
     build: Build::Mechanism(|entry, kind| {
         let factor = entry.number("factor");
         if let MechanismKind::Strut(strut) = kind {

@@ -24,7 +24,7 @@ pub static PERIODIC_DISTURBANCE: EffectDef = EffectDef {
         choice("kind", &KINDS, "what it is at a body"),
     ],
     equation: "amplitude · sin(2π f t + phase), t from the run's start: an effort at a joint; at a body a couple, or a force at the centre of mass, fixed in the body.",
-    source: "Fourier component of an imbalance; laws in `crates/sim/src/effect/joint.rs` and `crates/sim/src/effect/body/load.rs`.",
+    source: "Fourier component of an imbalance; laws in `crates/sim/src/parts/effect/joint.rs` and `crates/sim/src/parts/effect/body/load.rs`.",
     build: Build::EffortOrLoad { effort, load },
     identify: Identify {
         candidates: Candidates::JointAndBody { joint: at_joint, body: at_body },

@@ -20,7 +20,7 @@ pub static SLOSH: EffectDef = EffectDef {
         shape("position", ANY, M, "where it rests, from the nominal centre of mass, link axes").vector().optional(),
     ],
     equation: "m ẍ = −m (Ω² u + 2 ζ Ω w) + m g, the opposite on the body at x; Ω = 2π frequency, u: deflection, w: its rate as the turning body sees it.",
-    source: "The equivalent spring-mass of a liquid, Abramson 1966; law in `crates/sim/src/effect/body/slosh.rs`.",
+    source: "The equivalent spring-mass of a liquid, Abramson 1966; law in `crates/sim/src/parts/effect/body/slosh.rs`.",
     build: Build::Part(PartBuild {
         size: "mass",
         take_out: |entry, own, com| own.without_point(entry.number("mass"), &(com + entry.vector("position"))),

@@ -19,7 +19,7 @@ pub static TETHER_STIFFNESS: EffectDef = EffectDef {
         shape("anchor", ANY, M, "a: where it pulls to, W axes").vector(),
     ],
     equation: "−k (x − a) − d ẋ at the origin x of the link; its length at rest is zero.",
-    source: "A hose taken as linear; law in `crates/sim/src/effect/body/load.rs`.",
+    source: "A hose taken as linear; law in `crates/sim/src/parts/effect/body/load.rs`.",
     build: Build::Load(|entry| Load::Tether {
         k: entry.number("k"),
         d: entry.number("d"),

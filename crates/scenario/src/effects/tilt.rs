@@ -12,7 +12,7 @@ pub static TILT: EffectDef = EffectDef {
     places: &[PlaceKind::World],
     parameters: &[zero("vector", ANY, M_PER_S2, "added acceleration, W axes").vector()],
     equation: "a = vector on every mass, beside gravity: of a table tilted by small angles (α, β) about x and y, g (β, −α, 0).",
-    source: "None needed; law in `crates/sim/src/effect/mod.rs`.",
+    source: "None needed; law in `crates/sim/src/forces/effects.rs`.",
     build: Build::Acceleration(|entry| entry.vector("vector")),
     identify: Identify {
         candidates: Candidates::World(candidates),
