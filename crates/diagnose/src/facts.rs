@@ -2,7 +2,7 @@
 
 use crate::plant::Built;
 use crate::reading::Value;
-use crate::tape::{Commanded, Tape};
+use crate::tape::{CommandTape, Commanded, Tape};
 use contact::{Normal, NormalLaw};
 use friction::Friction;
 use multibody::JointKind;
@@ -94,10 +94,14 @@ fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
             |j: &&multibody::Joint| !j.is_mimic && matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
         for joint in vehicle.tree.joints.iter().filter(single) {
             let coordinate = vehicle.v0 + joint.v_index;
-            let drives = |i: usize| matches!(built.model.actuators[i].kind, ActuatorKind::JointEffort { coordinate: c, .. } if c == coordinate);
-            let commands =
-                tapes.iter().flat_map(|t| &t.commands).filter(|c| drives(c.actuator) && c.what == Commanded::Effort);
-            let largest = commands.flat_map(|c| &c.values).fold(0.0_f64, |m, e| m.max(e.abs()));
+            let limit = |i: usize| match built.model.actuators[i].kind {
+                ActuatorKind::JointEffort { coordinate: c, limit } if c == coordinate => Some(limit),
+                _ => None,
+            };
+            let efforts = tapes.iter().flat_map(|t| &t.commands).filter(|c| c.what == Commanded::Effort);
+            let given =
+                |c: &CommandTape| Some((c.values.iter().fold(0.0_f64, |m, e| m.max(e.abs())), limit(c.actuator)?));
+            let largest = efforts.filter_map(given).fold(0.0_f64, |m, (asked, limit)| m.max(asked.min(limit)));
             all.push(JointFact {
                 name: joint_name(built, &vehicle.name, &joint.name),
                 coordinate,

@@ -40,6 +40,7 @@ fn candidates(actuator: &ActuatorFact) -> Vec<Candidate> {
     let limited = Candidate::new(actuator.place.clone(), coordinates)
         .screened_at("limit 0.9 of the largest command", &at(0.9))
         .screened_at("limit 0.7 of the largest command", &at(0.7))
-        .screened_at("limit 0.4 of the largest command", &at(0.4));
+        .screened_at("limit 0.4 of the largest command", &at(0.4))
+        .screened_at("limit 0.15 of the largest command", &at(0.15));
     vec![limited]
 }

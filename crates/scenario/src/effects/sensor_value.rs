@@ -57,17 +57,13 @@ pub static SENSOR_SCALE: EffectDef = EffectDef {
         find_fault: orientations_have_none,
     }),
     identify: Identify {
-        candidates: Candidates::Sensor(|sensor| {
-            if sensor.is_orientation() {
-                return Vec::new();
-            }
-            let coordinates = vec![Coordinate::free("scale", 1.0).within(CREDIBLE)];
-            vec![Candidate::new(sensor.place(), coordinates).screened(&[Along::new(0, 1e-4)])]
-        }),
+        candidates: Candidates::Sensor(scale),
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
-        nested: None,
+        nested: Some(
+            |_, x| if x.len() == 3 { vec![Alternative::here(&SENSOR_SCALE, vec![mean(x)])] } else { Vec::new() },
+        ),
         start: Start::Mean,
         minima: Minima::One,
         concerns: Concerns::Reading,
@@ -96,6 +92,28 @@ fn bias(sensor: &SensorFact) -> Vec<Candidate> {
     }
     let vector = Coordinate::vector(["bias[0]", "bias[1]", "bias[2]"], [0.0; 3]);
     vec![Candidate::new(sensor.place(), vector).screened(&Along::each(sensor.axes.iter().copied(), sigma))]
+}
+
+/// One factor for all components, and one for each: three gyros are three sensors.
+fn scale(sensor: &SensorFact) -> Vec<Candidate> {
+    if sensor.is_orientation() {
+        return Vec::new();
+    }
+    let one = vec![Coordinate::free("scale", 1.0).within(CREDIBLE)];
+    let one = Candidate::new(sensor.place(), one).screened(&[Along::new(0, A_LITTLE)]);
+    if sensor.quantity.is_joint() || sensor.axes.len() < 2 {
+        return vec![one];
+    }
+    let each = Coordinate::vector(["scale[0]", "scale[1]", "scale[2]"], [1.0; 3]).into_iter();
+    let each = each.map(|c| c.within(CREDIBLE)).collect();
+    vec![one, Candidate::new(sensor.place(), each).screened(&Along::each(sensor.axes.iter().copied(), A_LITTLE))]
+}
+
+/// Step of a factor by which its column is taken.
+const A_LITTLE: f64 = 1e-4;
+
+fn mean(x: &[f64]) -> f64 {
+    x.iter().sum::<f64>() / x.len() as f64
 }
 
 /// What is held against the bias of a place beside the numbers that it takes: as much as two or three of these cost. Cameras are surveyed, parts are
