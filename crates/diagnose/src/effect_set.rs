@@ -65,17 +65,18 @@ impl EffectSet {
         found.fold(self.clone(), |set, m| set.without(m))
     }
 
-    /// Mean and inverse variance of a fitted coordinate's prior, where it has one.
+    /// Mean and inverse variance of a fitted coordinate's prior, where it has one: its tolerance, or how far an effect's number may be expected.
     pub(crate) fn prior(&self, (m, k): (usize, usize)) -> Option<(f64, f64)> {
         let h = &self.members[m].0;
-        let sigma = h.tolerance.get(k).filter(|s| **s > 0.0)?;
-        Some((h.coordinates[k].neutral, 1.0 / (sigma * sigma)))
+        let coordinate = &h.coordinates[k];
+        let sigma = if h.is_tolerated() { h.tolerance[k] } else { coordinate.spread };
+        (sigma > 0.0 && sigma.is_finite()).then(|| (coordinate.neutral, 1.0 / (sigma * sigma)))
     }
 
     /// Where the fitted numbers that have a tolerance stand, in standard deviations from their nominal values.
     pub fn within_tolerances(&self) -> Vec<f64> {
         let off = |slot: (usize, usize)| {
-            let (mean, weight) = self.prior(slot)?;
+            let (mean, weight) = self.prior(slot).filter(|_| self.members[slot.0].0.is_tolerated())?;
             Some((self.members[slot.0].1[slot.1] - mean) * weight.sqrt())
         };
         self.slots().into_iter().filter_map(off).collect()

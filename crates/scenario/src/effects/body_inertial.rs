@@ -135,6 +135,7 @@ fn com(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
     // In the plane only what lies in it shows.
     let shown = if is_planar(body) { 2 } else { 3 };
     let coordinates = Coordinate::vector(["com[0]", "com[1]", "com[2]"], body.com.into());
+    let coordinates = coordinates.into_iter().map(|c| c.about(body.reach())).collect();
     let centre = Candidate::new(body.place(), coordinates).screened(&Along::each(0..shown, 1e-5));
     vec![centre.holding((shown..3).collect())]
 }
@@ -153,7 +154,11 @@ fn inertia(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
     if columns.is_empty() {
         return Vec::new();
     }
-    let coordinates = INERTIA.into_iter().zip(entries).map(|(key, at)| Coordinate::free(key, at)).collect();
+    let coordinates = INERTIA
+        .into_iter()
+        .zip(entries)
+        .map(|(key, at)| Coordinate::free(key, at).about(3.0 * body.mean_moment()))
+        .collect();
     let tensor = Candidate::new(body.place(), coordinates).screened(&columns);
     vec![tensor.holding((0..6).filter(|k| !is_shown(k)).collect())]
 }

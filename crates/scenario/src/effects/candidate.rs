@@ -17,6 +17,8 @@ pub struct Coordinate {
     pub neutral: f64,
     /// Smallest and largest value.
     pub bounds: [f64; 2],
+    /// How far from neutral it may be expected, a standard deviation: what keeps it there where no reading shows it. Infinite for none.
+    pub spread: f64,
 }
 
 /// How a coordinate stands for its parameter.
@@ -31,7 +33,7 @@ pub enum Scale {
 impl Coordinate {
     /// A linear coordinate without bounds.
     pub fn free(key: &'static str, neutral: f64) -> Self {
-        Self { key, scale: Scale::Linear, neutral, bounds: [f64::NEG_INFINITY, f64::INFINITY] }
+        Self { key, scale: Scale::Linear, neutral, bounds: [f64::NEG_INFINITY, f64::INFINITY], spread: f64::INFINITY }
     }
 
     /// A linear coordinate that is not negative.
@@ -41,7 +43,7 @@ impl Coordinate {
 
     /// A positive one, by its logarithm; `neutral` and bounds are the parameter's.
     pub fn log(key: &'static str, neutral: f64, bounds: [f64; 2]) -> Self {
-        Self { key, scale: Scale::Log, neutral: neutral.ln(), bounds: bounds.map(f64::ln) }
+        Self { key, scale: Scale::Log, neutral: neutral.ln(), bounds: bounds.map(f64::ln), spread: f64::INFINITY }
     }
 
     /// Three components of a vector, each free.
@@ -52,6 +54,11 @@ impl Coordinate {
     /// The same within other bounds.
     pub fn within(self, bounds: [f64; 2]) -> Self {
         Self { bounds, ..self }
+    }
+
+    /// The same, expected no farther from neutral than `spread`, a standard deviation: wide enough to be nothing beside what a reading shows.
+    pub fn about(self, spread: f64) -> Self {
+        Self { spread, ..self }
     }
 
     /// The parameter at a value of the coordinate.

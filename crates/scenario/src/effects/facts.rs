@@ -125,6 +125,12 @@ impl BodyFact {
         format!("body:{}", self.name)
     }
 
+    /// How far it reaches from its link's origin, m: to its centre of mass, and from there twice the radius of gyration, as far as a rod does.
+    pub fn reach(&self) -> f64 {
+        let gyration = if self.mass > 0.0 { (1.5 * self.mean_moment() / self.mass).max(0.0).sqrt() } else { 0.0 };
+        self.com.norm() + 2.0 * gyration
+    }
+
     /// Axes about which it can turn as a base.
     pub fn turns(&self) -> &[bool] {
         &self.mask[..3]

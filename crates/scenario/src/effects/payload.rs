@@ -53,15 +53,26 @@ fn add(entry: &Entry<'_>, inertial: &mut Option<Inertial>, faults: &mut Faults<'
     own.mass = total;
 }
 
+/// Mass with which a payload is screened, kg, and how far from the link's origin at least and at most, m.
+const SMALL: f64 = 1e-2;
+const NEAREST: f64 = 0.05;
+const FARTHEST: f64 = 0.5;
+
 /// A base that carries more has another mass, centre and inertia: only links of arms have candidates.
 fn candidates(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
     if body.is_base {
         return Vec::new();
     }
     let mut coordinates = vec![Coordinate::level("mass", 0.0)];
-    coordinates.extend(Coordinate::vector(["com[0]", "com[1]", "com[2]"], [0.0; 3]));
-    let at = |c: [f64; 3]| vec![1e-2, 1e-2 * c[0], 1e-2 * c[1], 1e-2 * c[2]];
-    let points = [at([0.0; 3]), at([0.1, 0.0, 0.0]), at([0.0, 0.1, 0.0]), at([0.0, 0.0, 0.1])];
+    // Of the moment m p: as if the link's own mass hung at its end.
+    let moment = Coordinate::vector(["com[0]", "com[1]", "com[2]"], [0.0; 3]).into_iter();
+    coordinates.extend(moment.map(|c| c.about(body.mass * body.reach())));
+    // On both sides of the origin along each axis, so that mass, moments and moments of inertia have columns each and none has to
+    // stand for another: the signs of the moments do not hang on what the inertia asks for.
+    let at = |c: Vec3| vec![SMALL, SMALL * c.x, SMALL * c.y, SMALL * c.z];
+    let arm = (0.5 * body.reach()).clamp(NEAREST, FARTHEST);
+    let sides = [Vec3::x(), Vec3::y(), Vec3::z()].into_iter().flat_map(|axis| [arm * axis, -arm * axis]);
+    let points: Vec<Vec<f64>> = std::iter::once(Vec3::zeros()).chain(sides).map(at).collect();
     let place = format!("link:{}", body.name);
     vec![Candidate::new(place, coordinates).encoded(Encoding::Moment).screened_at("", &points)]
 }
