@@ -5,7 +5,7 @@ use crate::reading::Value;
 use crate::tape::{CommandTape, Commanded, Tape};
 use contact::{Normal, NormalLaw};
 use friction::Friction;
-use multibody::JointKind;
+use multibody::{Inertial, JointKind};
 use scenario::effects::facts::Survey;
 use scenario::measure::Quantity;
 use sim::{ActuatorKind, MechanismKind};
@@ -161,12 +161,15 @@ fn bodies(built: &Built) -> Vec<BodyFact> {
             let mask = if is_base { vehicle.base.mask() } else { [false; 6] };
             let thrust = |k: &ActuatorKind| matches!(k, ActuatorKind::Thruster { body, .. } if *body == vehicle.body0);
             let pushed = built.model.actuators.iter().any(|a| thrust(&a.kind));
+            // A correction says what a link has of its own; what effects add to it or let move in it comes on top.
+            let own = built.own_inertials[number].iter().find(|(name, _)| *name == link.name).and_then(|(_, own)| *own);
+            let Some(Inertial { mass, com, tensor_com: inertia }) = own else { continue };
             all.push(BodyFact {
                 name: link_name(built, &vehicle.name, &link.name),
                 vehicle: number,
-                mass: link.inertia.mass,
-                com: link.inertia.com(),
-                inertia: link.inertia.tensor_com(),
+                mass,
+                com,
+                inertia,
                 mask,
                 is_base,
                 is_on_joints: link.body != 0,

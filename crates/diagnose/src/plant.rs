@@ -5,7 +5,7 @@ use crate::tape::Commanded;
 use record::{RecordedRun, RecordingSet};
 use scenario::measure::{Gauge, MeasureError, Mount, Quantity, SensorModel};
 use scenario::spec::{Effect, Integrator, IntegratorKind};
-use scenario::{DriveChannel, Scenario, Stock};
+use scenario::{DriveChannel, OwnInertials, Scenario, Stock};
 use sim::{Actuator, ActuatorKind, DrivePath, EffectKind, LineEffect, LineLaw, Model, State};
 use std::sync::{Arc, OnceLock};
 
@@ -35,6 +35,8 @@ pub struct Built {
     pub sensors: Vec<(String, Gauge, SensorModel)>,
     /// The driven coordinates' channels.
     pub drives: Vec<DriveChannel>,
+    /// Mass properties of the vehicles' links without what effects add to them or let move in them.
+    pub own_inertials: Vec<OwnInertials>,
     /// Elastic mounts.
     pub mounts: Vec<Mount>,
     /// Delays of actuators, s, in the order of the effects.
@@ -154,6 +156,7 @@ impl Plant {
             sensors: self.channels.iter().filter_map(sensor).collect(),
             mounts: Mount::all(&model),
             drives: mission.drives,
+            own_inertials: mission.own_inertials,
             delays,
             model,
         })

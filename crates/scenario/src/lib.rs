@@ -22,7 +22,9 @@ mod spelling;
 mod starter;
 pub mod strategy;
 
-pub use build::{DriveChannel, Mission, Stock, build, build_from, check_start, docking_visuals, shape_of_geometry};
+pub use build::{
+    DriveChannel, Mission, OwnInertials, Stock, build, build_from, check_start, docking_visuals, shape_of_geometry,
+};
 pub use document::Source;
 pub use error::{Place, Problem, ScenarioError, ScenarioErrors};
 pub use finished::{Finished, run};

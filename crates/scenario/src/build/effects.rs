@@ -21,7 +21,7 @@ pub(super) use body::{NominalComs, nominal_coms};
 use super::actuators::ActuatorTable;
 use super::faults::Faults;
 use crate::effects::Build;
-use multibody::RobotDescription;
+use multibody::{Inertial, RobotDescription};
 use sim::{Environment, Mechanism, PairLaw, ShapeSpec, VehicleSpec};
 
 /// The parts of a world that effects may change, before it is built.
@@ -53,13 +53,15 @@ pub(super) fn check<'a>(scenario: &'a crate::spec::Scenario, faults: &mut Faults
 }
 
 /// Changes masses, centres of mass and inertias, before the trees are built: new values first, then what is added to them,
-/// whatever the order in the file, then what is taken out to move by itself.
-pub(super) fn edit_robots(plan: &[Entry<'_>], robots: &mut Robots<'_>, faults: &mut Faults<'_>) {
+/// whatever the order in the file, then what is taken out to move by itself. Returns what the links had after the first: their own.
+pub(super) fn edit_robots(plan: &[Entry<'_>], robots: &mut Robots<'_>, faults: &mut Faults<'_>) -> Vec<OwnInertials> {
     for entry in plan {
         if let Build::SetMass(edit) = entry.def.build {
             inertia::edit(entry, edit, robots, faults);
         }
     }
+    let own_of = |robot: &RobotDescription| robot.links.iter().map(|l| (l.name.clone(), l.inertial)).collect();
+    let own = robots.descriptions.iter().map(own_of).collect();
     for entry in plan {
         if let Build::AddMass(edit) = entry.def.build {
             inertia::edit(entry, edit, robots, faults);
@@ -70,7 +72,11 @@ pub(super) fn edit_robots(plan: &[Entry<'_>], robots: &mut Robots<'_>, faults: &
             body::take_out(entry, part, robots, faults);
         }
     }
+    own
 }
+
+/// The links of a robot with the mass properties that are their own: of the file, or of a correction.
+pub type OwnInertials = Vec<(String, Option<Inertial>)>;
 
 /// Changes the parts of the world, and adds what acts in it.
 pub(super) fn apply(plan: &[Entry<'_>], parts: &mut Parts, faults: &mut Faults<'_>) {

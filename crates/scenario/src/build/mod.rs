@@ -22,6 +22,7 @@ mod vehicles;
 pub(crate) use actuators::ActuatorTable;
 pub use docking::docking_visuals;
 pub use drives::DriveChannel;
+pub use effects::OwnInertials;
 pub(crate) use effects::{Entry, Parts, Tip, add_mount};
 pub(crate) use faults::Faults;
 pub(crate) use kinematics::{calc_error, halves, solve_pose};
@@ -47,6 +48,9 @@ pub struct Mission {
     pub robots: Vec<RobotDescription>,
     /// What is doubtful in those files, one list per vehicle.
     pub robot_warnings: Vec<UrdfWarnings>,
+    /// Mass properties of their links, one list per vehicle, as files and corrections have them: without what effects add to a link, or let move in it by
+    /// itself.
+    pub own_inertials: Vec<OwnInertials>,
     /// The world at t = 0.
     pub world: World,
     /// The driven coordinates, in the order of [`Model::with_drive_paths`].
@@ -163,6 +167,7 @@ fn finish(
         scenario: scenario.clone(),
         robots: files.robots,
         robot_warnings: files.warnings,
+        own_inertials: files.own_inertials,
         world,
         drives,
         controller,

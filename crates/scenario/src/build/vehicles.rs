@@ -14,6 +14,8 @@ pub(super) struct RobotFiles {
     pub(super) robots: Vec<RobotDescription>,
     /// What is doubtful in them.
     pub(super) warnings: Vec<UrdfWarnings>,
+    /// Mass properties of the links without what effects add to them or take out.
+    pub(super) own_inertials: Vec<effects::OwnInertials>,
 }
 
 /// The vehicles of a scenario, in its order.
@@ -52,14 +54,14 @@ pub(super) fn load(scenario: &Scenario, plan: &[Entry<'_>], stock: &Stock, fault
     let names: Vec<&str> = scenario.vehicles.iter().map(|v| v.name.as_str()).collect();
     let nominal_coms = effects::nominal_coms(&robots);
     let mut edited = effects::Robots { names: &names, descriptions: &mut robots, nominal_coms: &nominal_coms };
-    effects::edit_robots(plan, &mut edited, faults);
+    let own_inertials = effects::edit_robots(plan, &mut edited, faults);
     let spec = |(vehicle, (robot, base)): (&Vehicle, (&RobotDescription, sim::Base))| VehicleSpec {
         name: vehicle.name.clone(),
         tree: Tree::from_description(robot),
         base,
     };
     let specs = scenario.vehicles.iter().zip(robots.iter().zip(bases)).map(spec).collect();
-    Some(Loaded { files: RobotFiles { robots, warnings }, nominal_coms, specs })
+    Some(Loaded { files: RobotFiles { robots, warnings, own_inertials }, nominal_coms, specs })
 }
 
 /// Takes the range from the joints that are named to have none.
