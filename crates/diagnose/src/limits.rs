@@ -19,7 +19,7 @@ pub(crate) const SAMPLES: usize = 5;
 const SHARE: f64 = 1e-3;
 /// Standard deviations of a sample, and share of the limit, by which it is passed beyond doubt.
 const DEVIATIONS: f64 = 4.0;
-pub(crate) const MARGIN: f64 = 0.01;
+pub(crate) const MARGIN: f64 = 2e-3;
 /// Samples between two positions that tell a speed.
 const APART: usize = 8;
 /// The limit that is put in its place, in largest speeds seen: far enough that nothing a corrected model does comes near.

@@ -27,7 +27,7 @@ const TAIL: f64 = 0.025;
 /// Growth of a run's mean square above noise that is harm. At 1 a hair's breadth would be harm, at 2 a run may become twice as wrong.
 const HARM: f64 = 1.2;
 /// Error in windows (units of noise) and share of the mismatch up to which what is left on runs that were left out is no second explanation's.
-const LEFT: f64 = 1.5;
+pub(crate) const LEFT: f64 = 1.5;
 pub(crate) const NEXT_TO_NOTHING: f64 = 0.01;
 /// The same in standard deviations of what noise alone leaves.
 const SIGMAS: f64 = 4.0;
@@ -77,6 +77,8 @@ impl Window {
 pub(crate) struct Use {
     /// Whether it helps there.
     pub helps: bool,
+    /// Whether next to nothing is left there.
+    pub leaves_little: bool,
     /// Whether it may be the whole explanation: it leaves next to nothing there, and makes none of them worse.
     pub is_whole: bool,
 }
@@ -99,7 +101,10 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
     let whole = judgement.rms_of(tapes, false, judging);
     let leads_astray = whole.is_some_and(|[before, after]| before < NEAR && after > LEFT && after > HARM * before);
     let is_whole = leaves_little && harmed.is_empty() && !leads_astray;
-    (Explained { share: all.share(), interval, window_s, runs: count, left_out, harmed }, Use { helps, is_whole })
+    (
+        Explained { share: all.share(), interval, window_s, runs: count, left_out, harmed },
+        Use { helps, leaves_little, is_whole },
+    )
 }
 
 /// Windows by run.

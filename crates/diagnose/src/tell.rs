@@ -12,6 +12,7 @@ use crate::evidence::{
 use crate::hypothesis::Hypothesis as Member;
 use crate::linear::{Segment, Stage};
 use crate::run::Findings;
+use crate::share;
 use crate::vocabulary::unit;
 use nalgebra::DMatrix;
 use record::inspect::Inspection;
@@ -51,6 +52,7 @@ pub(crate) fn tell(
             .chain(findings.said.iter().cloned())
             .chain(said_of_tolerances(findings, &scenario.tolerance))
             .chain(lost_runs(findings, stage))
+            .chain(only_where_left_out(findings, stage))
             .collect(),
     };
     let evidence = Evidence {
@@ -93,6 +95,20 @@ fn remainder(findings: &Findings, stage: &Stage<'_>, features: &Features) -> Opt
 
 /// Places of a remainder that are told.
 const PLACES: usize = 3;
+
+/// That runs left out of the fit are off where those that were fitted are not.
+fn only_where_left_out(findings: &Findings, stage: &Stage<'_>) -> Option<String> {
+    let off = |role: record::Role| findings.judgement.rms_of(stage.tapes, true, role).map(|[_, after]| after);
+    let is_found = findings.verdict.is_found() || findings.found.set.has_findings();
+    let (fit, left_out) = (off(record::Role::Fit)?, off(record::Role::Holdout)?);
+    let is_new = !is_found && fit <= share::LEFT && left_out > share::LEFT;
+    is_new.then(|| {
+        format!(
+            "What differs shows in runs left out of the fit alone, by {left_out:.3} times the noise in windows: the others are predicted as well as noise \
+             allows, so that nothing was sought. Give one of those runs role = \"fit\" to have it sought there."
+        )
+    })
+}
 
 /// Runs that the corrected model follows up to an instant only.
 fn lost_runs(findings: &Findings, stage: &Stage<'_>) -> Vec<String> {

@@ -31,7 +31,7 @@ pub static FRICTION_ANISOTROPY: EffectDef = EffectDef {
         tier: Tier::Exotic,
         tolerance: None,
         penalty: None,
-        nested: Some(|_, x| vec![Alternative::here(&FRICTION_COEFFICIENT, vec![x[0]])]),
+        nested: Some(one_level),
         start: Start::Mean,
         minima: Minima::One,
         concerns: Concerns::Motion,
@@ -47,6 +47,15 @@ fn set_ellipse(law: &mut Bristle, along: f64, across: f64) -> Result<(), String>
     law.mu_static = if law.mu_static == law.mu_kinetic { along } else { law.mu_static * (along / law.mu_kinetic) };
     (law.mu_kinetic, law.across) = (along, across / along);
     Ok(())
+}
+
+/// What slides one way shows one point of the ellipse: the level there is anywhere between the two.
+fn one_level(_: &str, x: &[f64]) -> Vec<Alternative> {
+    let (level, half) = (x[0], x[1].hypot(x[2]));
+    [level + half, level, level - half]
+        .into_iter()
+        .map(|mu| Alternative::here(&FRICTION_COEFFICIENT, vec![mu]))
+        .collect()
 }
 
 /// Level and ellipse in the place of two levels and an angle, which has no value where the levels are one.
