@@ -27,7 +27,8 @@ pub(crate) fn take_further(
     let here = if is_window { &now.windows } else { &now.whole };
     let most = brought_by(here, &ready);
     for Refit { attempt: at, fit: tried } in ready {
-        let is_enough = |b: &Standing| is_done(now, b) || stage.work.is_spent(Until::Search);
+        // What was fitted to whole runs has been paid for.
+        let is_enough = |b: &Standing| is_done(now, b) || is_window && stage.work.is_spent(Until::Search);
         if best.as_ref().is_some_and(is_enough) || here.cost - tried.cost < NEARLY * most {
             continue;
         }

@@ -398,7 +398,7 @@ fn verdict_along(
     let left = (corrected * corrected - 1.0) / (nominal * nominal - 1.0).max(1e-9);
     let is_next_to_noise = after.is_noise() || left < NEXT_TO_NOTHING && corrected < RIGHT;
     if !found.set.has_findings() {
-        let is_noise = (before.is_noise() || is_next_to_noise) && of_use.leaves_little;
+        let is_noise = (before.is_noise() || is_next_to_noise) && of_use.leaves_little || of_use.is_quiet;
         return if is_noise { Verdict::NoMismatch } else { Verdict::Unknown };
     }
     if is_next_to_noise && of_use.is_whole {
@@ -580,7 +580,8 @@ const WINDOWS: [f64; 2] = [12.0, 7.5];
 
 /// What was found, from what it leaves and from what it does for runs left out of the fit: an effect that helps there is never dropped.
 fn verdict(judgement: &Judgement, found: &Fit, (follows, of_use): (bool, Use)) -> Verdict {
-    if !found.is_significant() && !found.set.has_findings() && of_use.leaves_little {
+    let agrees = !found.is_significant() && of_use.leaves_little || of_use.is_quiet;
+    if agrees && !found.set.has_findings() {
         return Verdict::NoMismatch;
     }
     let [before, after] = judgement.rms(!follows, |run| found.has_run(run));

@@ -29,7 +29,9 @@ const HARM: f64 = 1.2;
 /// Error in windows (units of noise) and share of the mismatch up to which what is left on runs that were left out is no second explanation's.
 pub(crate) const LEFT: f64 = 1.5;
 pub(crate) const NEXT_TO_NOTHING: f64 = 0.01;
-/// The same in standard deviations of what noise alone leaves.
+/// Error of what is predicted as well as noise allows, in units of that: figures of noise are known to a per cent or two.
+const QUIET: f64 = 1.02;
+/// What is left beyond doubt, in standard deviations of what noise alone leaves.
 const SIGMAS: f64 = 4.0;
 
 /// A window's squared residuals before and after, and how many there are.
@@ -79,6 +81,8 @@ pub(crate) struct Use {
     pub helps: bool,
     /// Whether next to nothing is left there.
     pub leaves_little: bool,
+    /// Whether nothing but noise is left, there over whole runs as well, and in the windows of the runs that were fitted.
+    pub is_quiet: bool,
     /// Whether it may be the whole explanation: it leaves next to nothing there, and makes none of them worse.
     pub is_whole: bool,
 }
@@ -100,10 +104,13 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
     // Where whole runs were followed before, they have to be followed as well.
     let whole = judgement.rms_of(tapes, false, judging);
     let leads_astray = whole.is_some_and(|[before, after]| before < NEAR && after > LEFT && after > HARM * before);
+    let is_still = |[_, after]: [f64; 2]| after <= QUIET;
+    let in_windows = [Role::Fit, judging].map(|role| judgement.rms_of(tapes, true, role));
+    let is_quiet = left_out && whole.is_some_and(is_still) && in_windows.into_iter().flatten().all(is_still);
     let is_whole = leaves_little && harmed.is_empty() && !leads_astray;
     (
         Explained { share: all.share(), interval, window_s, runs: count, left_out, harmed },
-        Use { helps, leaves_little, is_whole },
+        Use { helps, leaves_little, is_quiet, is_whole },
     )
 }
 

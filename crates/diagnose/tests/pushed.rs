@@ -96,6 +96,17 @@ fn what_acts_on_a_link_alone_is_told_there() {
     check_number(&told(&effect("linear-drag", "body:boom", &[("c", number(0.4))])), "c", 0.4);
 }
 
+/// A load at the end of a link is one law, not a mass, a rotor and another mass; how high it hangs nothing tells, and nothing is made up.
+#[test]
+fn a_load_at_the_end_of_a_link_is_one() {
+    let at = [-0.45, 0.05, 0.0];
+    let diagnosis =
+        told(&effect("payload", "link:boom", &[("mass", number(0.1)), ("com", ParamValue::Numbers(at.to_vec()))]));
+    check_number(&diagnosis, "mass", 0.1);
+    let ParamValue::Numbers(com) = &diagnosis.effects[0].params["com"] else { panic!("{:?}", diagnosis.effects) };
+    assert!((com[0] - at[0]).abs() < 0.01 && (com[1] - at[1]).abs() < 0.01 && com[2].abs() < 0.05, "{com:?}");
+}
+
 #[test]
 fn a_graded_thruster_saturates() {
     let limited = effect("actuator-saturation", "actuator:left_ahead", &[("limit", number(0.7))]);
@@ -113,6 +124,19 @@ fn commands_in_newtons_are_told_from_shares() {
     }
     let diagnosis = diagnose::diagnose(puck(), &set, &()).unwrap().0;
     assert_eq!(diagnosis.verdict, Verdict::NoMismatch, "{:?}", diagnosis.effects);
+}
+
+/// What only runs left out of the fit show is no reason to call the scenario right.
+#[test]
+fn what_only_a_run_left_out_shows_is_no_agreement() {
+    let (mut set, dragged) = (recorded(&[]), recorded(&[effect("linear-drag", "body:hull", &[("c", number(1.5))])]));
+    for (run, other) in set.runs.iter_mut().zip(dragged.runs).filter(|(run, _)| run.role == Role::Holdout) {
+        *run = other;
+    }
+    let diagnosis = diagnose::diagnose(puck(), &set, &()).unwrap().0;
+    assert_eq!(diagnosis.verdict, Verdict::Unknown);
+    let is_said = |remark: &String| remark.contains("left out of the fit alone");
+    assert!(diagnosis.remarks.iter().any(is_said), "{:?}", diagnosis.remarks);
 }
 
 /// What each thruster of the rig can do, N.
