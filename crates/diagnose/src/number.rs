@@ -32,6 +32,7 @@ mod tests {
         assert_eq!(with_error(3_600_000.0, 21_000.0), "(3.600 ± 0.021)·10⁶");
         assert_eq!(with_error(158.8, f64::INFINITY), "158.8");
         assert_eq!(with_error(0.0, 0.02), "0.000 ± 0.020");
+        assert_eq!(with_error(-1e-9, 8.47), "0.0 ± 8.5");
     }
 
     #[test]

@@ -39,6 +39,8 @@ pub fn with_error(value: f64, std_err: f64) -> String {
     let unit = 10_f64.powi(power);
     let (value, std_err) = (value / unit, std_err / unit);
     let places = (1 - std_err.log10().floor() as i32).clamp(0, 9) as usize;
+    // What rounds to nothing has no sign.
+    let value = if value.abs() < 0.5 * 10_f64.powi(-(places as i32)) { 0.0 } else { value };
     let text = minus(&format!("{value:.places$} ± {std_err:.places$}"));
     if power == 0 { text } else { format!("({text})·10{}", superscript(&power.to_string())) }
 }
