@@ -44,8 +44,12 @@ pub(crate) fn delivered(
     let pace = Pace::even(plant.scenario.integrator.step_s);
     let stage = Stage { tapes, pace, work, doubt: noise::STATED, hears: None };
     raised_where((plant, built, effects), tapes, |asked, raised| {
-        let windows = cut(built, tapes, Some(window), |t| t.role == Role::Fit);
-        asked.is_delivered(&stage, [built, raised], &windows)
+        // A drive is the same in all runs: where no run that is fitted asks so much, those that are left out say what it delivers.
+        let by = |role| {
+            let windows = cut(built, tapes, Some(window), |t| t.role == role);
+            asked.is_delivered(&stage, [built, raised], &windows)
+        };
+        by(Role::Fit).or_else(|| by(Role::Holdout)).unwrap_or(false)
     })
 }
 
@@ -60,9 +64,6 @@ pub(crate) fn sought_along(
         return Ok(Err(raised));
     }
     let course = along::seek(stage, plant, (own, known))?;
-    if course.left[1].is_noise() {
-        return Ok(Ok(course));
-    }
     // Beside what was found a drive may be seen to deliver what is asked of it.
     let best = &course.found.best;
     let raised = delivered((plant, &best.built), &best.set.effects(), (stage.tapes, window), stage.work)?;
@@ -162,8 +163,8 @@ impl Asked {
         delivers(&all)
     }
 
-    /// Whether windows with such commands are followed clearly better by a model that delivers them.
-    fn is_delivered(&self, stage: &Stage<'_>, [own, raised]: [&Built; 2], windows: &[Segment]) -> bool {
+    /// Whether windows with such commands are followed clearly better by a model that delivers them; none where there are no such windows.
+    fn is_delivered(&self, stage: &Stage<'_>, [own, raised]: [&Built; 2], windows: &[Segment]) -> Option<bool> {
         let has_such = |s: &&Segment| {
             let own = stage.tapes[s.run].commands.iter().filter(|c| c.is_effort_of(self.actuator));
             let is_such = |(t, v): (&f64, &f64)| (s.span.from..s.span.to).contains(t) && is_beyond(*v, self.limit);
@@ -177,7 +178,7 @@ impl Asked {
         };
         let ratios = costs(raised).into_iter().zip(costs(own)).map(|(b, a)| (b / a).ln()).filter(|l| l.is_finite());
         let (sum, count) = ratios.fold((0.0, 0), |(sum, count), l| (sum + l, count + 1));
-        count > 0 && sum / f64::from(count) < CLEARLY.ln()
+        (count > 0).then(|| sum / f64::from(count) < CLEARLY.ln())
     }
 }
 

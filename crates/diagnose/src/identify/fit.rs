@@ -397,7 +397,10 @@ impl<'a> Problem<'a> {
             halved = 0;
             before = Some(now.clone());
             let found = Estimate { theta: within_bounds(&now.set, &slots, &found), ..found };
-            let set = self.possible(&now, now.set.moved(&slots, found.theta.as_slice()))?;
+            // At the edge of what a body can be there is no way on.
+            let Ok(set) = self.possible(&now, now.set.moved(&slots, found.theta.as_slice())) else {
+                return Ok(Fitted { converged: false, ..now });
+            };
             let tracks = self.moved(&now, &chains, &found);
             now = Fitted { tracks, spread: found.spread, ..self.with(&now, set)? };
         }
