@@ -92,7 +92,6 @@ fn module_uses(name: &str) -> BTreeMap<String, BTreeSet<String>> {
     for file in files.iter().filter(|f| top(f) != "lib") {
         let own = top(file);
         let text = code(&fs::read_to_string(file).unwrap());
-        let text = text.split("#[cfg(test)]").next().unwrap_or_default();
         let is_at_the_top = file.parent() == Some(&src);
         let found = uses.entry(own.clone()).or_default();
         for prefix in if is_at_the_top { &["crate::", "super::"][..] } else { &["crate::"] } {

@@ -250,7 +250,9 @@ fn diagnose_in(
     let left = left_by((&few, &thin), &plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
     let (explained, of_use) = share::explained(&judgement, &tapes, &found, window);
-    let verdict = verdict(&judgement, &found, (follows, of_use));
+    let is_noise = !found.is_significant();
+    let leaves_noise = is_noise || leaves_next_to_nothing(&judgement, &found, follows);
+    let verdict = verdict(&found, [is_noise, leaves_noise], of_use);
     let uncertainty = how_sure(&stage, &plant, &found, verdict)?;
     rivals.retain(|(title, _)| found.set.findings().any(|(h, _)| h.title() == *title));
     let remains = if found.is_significant() { found.excess() } else { 0.0 };
@@ -313,7 +315,9 @@ fn diagnose_whole(
     let left = left_by((few, few), plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
     let (explained, of_use) = share::explained(&judgement, &tapes, &found, window);
-    let verdict = verdict_along(&course, &judgement, (&found, follows), of_use);
+    let is_noise = course.left.map(|left| left.is_noise());
+    let leaves_noise = is_noise[1] || leaves_next_to_nothing(&judgement, &found, follows);
+    let verdict = verdict(&found, [is_noise[0] || leaves_noise, leaves_noise], of_use);
     let from_profile = vec![false; best.set.slots().len()];
     let uncertainty = Uncertainty { covariance: best.covariance.clone(), from_profile, optimism: f64::NAN };
     clock.stage("write", 1.0);
@@ -384,30 +388,6 @@ fn predict_along(
     let found = along::as_fit(few, best, if follows { whole.segments } else { windows });
     let segments = known.segments.into_iter().filter(|s| few.tapes[s.run].role == Role::Fit).collect();
     Ok(Predicted { known: Fit { segments, ..known }, found, follows, judgement })
-}
-
-/// What was detected, what was found, and what of it remains.
-fn verdict_along(
-    course: &along::Course,
-    judgement: &Judgement,
-    (found, follows): (&Fit, bool),
-    of_use: Use,
-) -> Verdict {
-    let [before, after] = course.left;
-    let [nominal, corrected] = judgement.rms(!follows, |run| found.has_run(run));
-    let left = (corrected * corrected - 1.0) / (nominal * nominal - 1.0).max(1e-9);
-    let is_next_to_noise = after.is_noise() || left < NEXT_TO_NOTHING && corrected < RIGHT;
-    if !found.set.has_findings() {
-        let is_noise = (before.is_noise() || is_next_to_noise) && of_use.leaves_little || of_use.is_quiet;
-        return if is_noise { Verdict::NoMismatch } else { Verdict::Unknown };
-    }
-    if is_next_to_noise && of_use.is_whole {
-        Verdict::Explained
-    } else if of_use.helps {
-        Verdict::PartlyExplained
-    } else {
-        Verdict::Unknown
-    }
 }
 
 /// How sure the numbers are; what helps nowhere is not told, nor how sure its numbers are.
@@ -578,21 +558,25 @@ fn window_of(set: &RecordingSet, tapes: &[Tape], parts: f64) -> f64 {
 /// another law first on one practice recording with limit cycles, and two slow and fast effects at once were found in the longer ones alone.
 const WINDOWS: [f64; 2] = [12.0, 7.5];
 
-/// What was found, from what it leaves and from what it does for runs left out of the fit: an effect that helps there is never dropped.
-fn verdict(judgement: &Judgement, found: &Fit, (follows, of_use): (bool, Use)) -> Verdict {
-    let agrees = !found.is_significant() && of_use.leaves_little || of_use.is_quiet;
-    if agrees && !found.set.has_findings() {
-        return Verdict::NoMismatch;
-    }
-    let [before, after] = judgement.rms(!follows, |run| found.has_run(run));
-    let left = (after * after - 1.0) / (before * before - 1.0).max(1e-9);
+/// What was found, from what it leaves and from what it does for runs left out of the fit: an effect that helps there is never dropped. `is_noise`: whether
+/// the nominal model, and the corrected one, leaves no more than noise.
+fn verdict(found: &Fit, is_noise: [bool; 2], of_use: Use) -> Verdict {
     if !found.set.has_findings() {
-        Verdict::Unknown
-    } else if of_use.is_whole && (!found.is_significant() || left < NEXT_TO_NOTHING && after < RIGHT) {
+        let agrees = is_noise[0] && of_use.leaves_little || of_use.is_quiet;
+        return if agrees { Verdict::NoMismatch } else { Verdict::Unknown };
+    }
+    if is_noise[1] && of_use.is_whole {
         Verdict::Explained
     } else if of_use.helps {
         Verdict::PartlyExplained
     } else {
         Verdict::Unknown
     }
+}
+
+/// Whether what was found leaves next to nothing of the mismatch where it is judged.
+fn leaves_next_to_nothing(judgement: &Judgement, found: &Fit, follows: bool) -> bool {
+    let [before, after] = judgement.rms(!follows, |run| found.has_run(run));
+    let left = (after * after - 1.0) / (before * before - 1.0).max(1e-9);
+    left < NEXT_TO_NOTHING && after < RIGHT
 }

@@ -353,6 +353,13 @@ pub(super) fn dyad_axes() -> [spatial::Vec3; 6] {
     [Vec3::x(), Vec3::y(), Vec3::z(), mixed(0, 1), mixed(0, 2), mixed(1, 2)]
 }
 
+/// The centre and places on either side of it along some axes: masses there add up to one with its first moment, whatever its moment of inertia.
+pub(super) fn around(axes: impl Iterator<Item = usize>, distance: f64) -> Vec<spatial::Vec3> {
+    use spatial::Vec3;
+    let sides = axes.flat_map(|k| [Vec3::ith(k, distance), Vec3::ith(k, -distance)]);
+    std::iter::once(Vec3::zeros()).chain(sides).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -102,7 +102,7 @@ pub(crate) use assembly::{Build, EditMass, GearSpec, PartBuild, SensorBuild};
 // What a definition's file needs of the others.
 use crate::build::{Entry, Faults};
 use crate::spec::Tolerance;
-use candidate::{Along, Candidate, Coordinate, Encoding, ScreenPoint, dyad_axes, log_grid};
+use candidate::{Along, Candidate, Coordinate, Encoding, ScreenPoint, around, dyad_axes, log_grid};
 use facts::{ActuatorFact, BodyFact, ContactFact, JointFact, MechanismFact, SensorFact, Survey};
 use identify::{Alternative, Candidates, Concerns, Identify, Minima, Start, Tier};
 use sim::Grain;

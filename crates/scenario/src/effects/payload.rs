@@ -71,8 +71,7 @@ fn candidates(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
     // stand for another: the signs of the moments do not hang on what the inertia asks for.
     let at = |c: Vec3| vec![SMALL, SMALL * c.x, SMALL * c.y, SMALL * c.z];
     let arm = (0.5 * body.reach()).clamp(NEAREST, FARTHEST);
-    let sides = [Vec3::x(), Vec3::y(), Vec3::z()].into_iter().flat_map(|axis| [arm * axis, -arm * axis]);
-    let points: Vec<Vec<f64>> = std::iter::once(Vec3::zeros()).chain(sides).map(at).collect();
+    let points: Vec<Vec<f64>> = around(0..3, arm).into_iter().map(at).collect();
     let place = format!("link:{}", body.name);
     vec![Candidate::new(place, coordinates).encoded(Encoding::Moment).screened_at("", &points)]
 }

@@ -101,7 +101,7 @@ fn scale(sensor: &SensorFact) -> Vec<Candidate> {
     }
     let one = vec![Coordinate::free("scale", 1.0).within(CREDIBLE)];
     let one = Candidate::new(sensor.place(), one).screened(&[Along::new(0, A_LITTLE)]);
-    if sensor.quantity.is_joint() || sensor.axes.len() < 2 {
+    if sensor.axes.len() < 2 {
         return vec![one];
     }
     let each = Coordinate::vector(["scale[0]", "scale[1]", "scale[2]"], [1.0; 3]).into_iter();

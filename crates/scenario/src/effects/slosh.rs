@@ -68,7 +68,7 @@ fn candidates(body: &BodyFact, survey: &Survey<'_>) -> Vec<Candidate> {
     let held: Vec<usize> = flat.map(|k| 3 + k).collect();
     // A tumble shows m p pᵀ, so that the mass alone stays as it is; what is pushed shows m and m p too.
     let (places, held) = match body.is_pushed() {
-        true => (around(&held), held),
+        true => (around((0..3).filter(|k| !held.contains(&(3 + k))), DISTANCE), held),
         false => (dyad_axes().map(|axis| DISTANCE * axis).to_vec(), [vec![0], held].concat()),
     };
     let mut slosh = Candidate::new(body.place(), coordinates).holding(held).expensive();
@@ -83,13 +83,6 @@ fn candidates(body: &BodyFact, survey: &Survey<'_>) -> Vec<Candidate> {
         slosh = slosh.screened_at(&format!("f = {f:.3} Hz"), &places.iter().map(point).collect::<Vec<_>>());
     }
     vec![slosh]
-}
-
-/// The centre and places on either side of it along each axis that is not held: masses there add up to one with its first moment.
-fn around(held: &[usize]) -> Vec<Vec3> {
-    let axes = (0..3).filter(|k| !held.contains(&(3 + k)));
-    let sides = axes.flat_map(|k| [Vec3::ith(k, DISTANCE), Vec3::ith(k, -DISTANCE)]);
-    std::iter::once(Vec3::zeros()).chain(sides).collect()
 }
 
 /// Frequencies (Hz) at which a part that swings inside a body is screened: those that the data show, six periods in the longest run, and more.
