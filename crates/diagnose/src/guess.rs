@@ -227,6 +227,7 @@ mod tests {
             times,
             values,
             rounding: 0.0,
+            blur: Vec::new(),
             late_s: 0.0,
         };
         Tape {

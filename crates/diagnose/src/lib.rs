@@ -57,6 +57,7 @@ pub mod select;
 mod settle;
 mod share;
 mod sought;
+mod stamps;
 pub mod standing;
 pub mod start;
 mod stretches;

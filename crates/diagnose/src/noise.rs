@@ -133,7 +133,8 @@ fn clean_reading(run: &RecordedRun, reading: &Reading, said: &mut LeftOut) -> Op
     }
     found.iter().for_each(|b| said.add(&reading.channel, b));
     let times = kept.iter().map(|i| reading.times[*i]).collect();
-    Some(Reading { axes, times, values: kept.iter().map(|i| reading.values[*i]).collect(), ..reading.clone() })
+    let blur = reading.blur_of(kept.iter().copied());
+    Some(Reading { axes, times, blur, values: kept.iter().map(|i| reading.values[*i]).collect(), ..reading.clone() })
 }
 
 /// What is wrong with the samples of one component.

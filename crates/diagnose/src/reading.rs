@@ -47,6 +47,8 @@ pub struct Reading {
     pub times: Vec<f64>,
     /// Measured values; components that were not sampled are zero.
     pub values: Vec<Value>,
+    /// What a stamp that is off by its standard deviation does to each sample, units of noise, axes as of a residual; nothing where stamps are right.
+    pub blur: Vec<Vec3>,
     /// How late its sensor was found to be, s: what is read so soon after the begin of a window tells of what was before it, and is not judged.
     pub late_s: f64,
 }
@@ -76,6 +78,11 @@ impl Reading {
         self.times.iter().zip(&self.values).filter(move |(_, v)| is_loud(v)).map(|(t, _)| *t)
     }
 
+    /// What stamps do to some samples.
+    pub(crate) fn blur_of(&self, samples: impl Iterator<Item = usize>) -> Vec<Vec3> {
+        if self.blur.is_empty() { Vec::new() } else { samples.map(|i| self.blur[i]).collect() }
+    }
+
     /// Residual of sample `i` in units of noise, written to the front of `out`.
     pub fn write_residual(&self, i: usize, predicted: &Value, out: &mut [f64]) {
         let difference = match (predicted, &self.values[i]) {
@@ -84,12 +91,37 @@ impl Reading {
             _ => Vec3::repeat(f64::NAN),
         };
         out.iter_mut().zip(&self.axes).for_each(|(r, &axis)| *r = difference[axis] / self.sigma);
+        if let Some(blur) = self.blur.get(i) {
+            whiten(out, &self.axes, blur);
+        }
+    }
+}
+
+/// Residuals of covariance 1 + b bᵀ made white: along b they are less sure.
+fn whiten(residual: &mut [f64], axes: &[usize], blur: &Vec3) {
+    let square: f64 = axes.iter().map(|&axis| blur[axis].powi(2)).sum();
+    if square > 0.0 {
+        let along: f64 = residual.iter().zip(axes).map(|(r, &axis)| r * blur[axis]).sum();
+        let by = along / square * (1.0 - (1.0 + square).sqrt().recip());
+        residual.iter_mut().zip(axes).for_each(|(r, &axis)| *r -= by * blur[axis]);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_stamp_that_is_off_makes_a_sample_less_sure_along_its_motion_only() {
+        let (axes, blur) = ([0, 2], Vec3::new(3.0, 7.0, 4.0));
+        let mut along = [3.0, 4.0];
+        whiten(&mut along, &axes, &blur);
+        let expected = 5.0 / 26f64.sqrt();
+        assert!((along[0] - 0.6 * expected).abs() < 1e-12 && (along[1] - 0.8 * expected).abs() < 1e-12, "{along:?}");
+        let mut across = [4.0, -3.0];
+        whiten(&mut across, &axes, &blur);
+        assert!((across[0] - 4.0).abs() < 1e-12 && (across[1] + 3.0).abs() < 1e-12);
+    }
 
     #[test]
     fn what_is_loud_is_so_in_any_component_and_either_sign() {
@@ -102,6 +134,7 @@ mod tests {
             times: vec![0.0, 1.0, 2.0, 3.0],
             values: vec![force(0.0), force(-0.4), force(0.2), force(9.0)],
             rounding: 0.0,
+            blur: Vec::new(),
             late_s: 0.0,
         };
         assert_eq!(reading.loud(6.0).collect::<Vec<_>>(), [1.0, 3.0]);

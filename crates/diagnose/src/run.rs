@@ -32,6 +32,7 @@ use crate::plant::{Built, Plant};
 use crate::replay::Pace;
 use crate::share::{self, NEXT_TO_NOTHING, Use};
 use crate::sought::{Sought, seek};
+use crate::stamps;
 use crate::standing::{Standing, fit_in_turns, follow_with};
 use crate::stretches::{cut, joined};
 use crate::tape::{Tape, load};
@@ -426,6 +427,8 @@ fn begin(
     clock: &mut Clock<'_>,
 ) -> Result<Begun, DiagnoseError> {
     let (tapes, mut said) = noise::clean(set, tapes);
+    let (tapes, jitter) = stamps::with_jitter(tapes);
+    said.extend(jitter);
     let window = window_of(set, &tapes, way.parts());
     let own = plant.scenario.integrator.step_s;
     let thin = |tapes: &[Tape]| tapes.iter().map(|t| t.thinned(ENOUGH)).collect::<Vec<Tape>>();

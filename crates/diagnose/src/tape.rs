@@ -145,6 +145,7 @@ impl Tape {
             Reading {
                 times: kept.iter().map(|i| r.times[*i]).collect(),
                 values: kept.iter().map(|i| r.values[*i]).collect(),
+                blur: r.blur_of(kept.iter().copied()),
                 ..r.clone()
             }
         };
@@ -157,8 +158,9 @@ impl Tape {
     pub(crate) fn within(&self, Span { from, to }: Span, is_wanted: impl Fn(&str) -> bool) -> Self {
         let part = |r: &Reading| {
             let range = r.times.partition_point(|t| *t < from)..r.times.partition_point(|t| *t <= to);
+            let blur = r.blur_of(range.clone());
             let (times, values) = (r.times[range.clone()].to_vec(), r.values[range].to_vec());
-            Reading { times, values, ..r.clone() }
+            Reading { times, values, blur, ..r.clone() }
         };
         let readings = self.readings.iter().filter(|r| is_wanted(&r.channel)).map(part);
         self.with_readings(readings.filter(|r| !r.times.is_empty()).collect())
@@ -292,7 +294,7 @@ fn readings_of(set: &RecordingSet, prefix: &str, quantity: Quantity, group: &[(u
         let values = (0..times.len()).map(|i| value_at(part, i, orientation)).collect();
         let axes = if orientation { vec![0, 1, 2] } else { part.iter().map(|(k, _)| *k).collect() };
         let (channel, times) = (prefix.to_owned(), times.to_vec());
-        Reading { channel, quantity, axes, sigma, rounding, times, values, late_s: 0.0 }
+        Reading { channel, quantity, axes, sigma, rounding, times, values, blur: Vec::new(), late_s: 0.0 }
     };
     parts.iter().filter(|p| !is_orientation(&quantity) || p.len() == 4).map(of_part).collect()
 }
@@ -325,6 +327,7 @@ mod tests {
                 rounding: 0.0,
                 times,
                 values,
+                blur: Vec::new(),
                 late_s: 0.0,
             }
         };

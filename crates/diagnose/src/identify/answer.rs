@@ -75,7 +75,17 @@ mod tests {
             let values = times.iter().map(|t| Value::Vector(Vec3::ith(0, at(*t)))).collect();
             let quantity = built.sensor(channel).expect("it is measured").0.quantity();
             let channel = channel.to_owned();
-            Reading { channel, quantity, axes: vec![0], sigma: 1e-3, rounding: 0.0, times, values, late_s: 0.0 }
+            Reading {
+                channel,
+                quantity,
+                axes: vec![0],
+                sigma: 1e-3,
+                rounding: 0.0,
+                times,
+                values,
+                blur: Vec::new(),
+                late_s: 0.0,
+            }
         };
         let turned = |t: f64| 4.0 * (t - 1.0).max(0.0);
         let readings =

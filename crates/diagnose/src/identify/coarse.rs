@@ -269,6 +269,7 @@ mod tests {
                 times,
                 values,
                 rounding: 0.0,
+                blur: Vec::new(),
                 late_s: 0.0,
             }
         };
@@ -344,6 +345,7 @@ mod tests {
             times: (0..=500).map(|i| 4e-3 * i as f64).collect(),
             values: vec![Value::Vector(Vec3::zeros()); 501],
             rounding: 0.0,
+            blur: Vec::new(),
             late_s: 0.0,
         };
         let tapes = vec![Tape::assemble(("run", Role::Fit), Vec::new(), plant.channels.iter().map(reading).collect())];

@@ -26,6 +26,7 @@ pub(crate) fn docking() -> (Built, Tape, Start) {
             rounding: 0.0,
             times,
             values,
+            blur: Vec::new(),
             late_s: 0.0,
         }
     };
@@ -187,6 +188,7 @@ fn what_is_handed_on_at_a_tick_remembers_what_the_drive_gave() {
         rounding: 0.0,
         times,
         values,
+        blur: Vec::new(),
         late_s: 0.0,
     };
     // A torque that changes its sign with every tick of 10 ms.

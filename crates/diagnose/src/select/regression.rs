@@ -101,11 +101,18 @@ impl<'a> Regression<'a> {
         let mut all: Vec<Spoken> = Vec::new();
         for size in 1..=most {
             let known = |set: &Spoken| set.members.iter().map(|m| m.0).collect::<Vec<usize>>();
-            let pairs: Vec<Vec<usize>> = beam
+            // Each of two effects alone may explain little of what they do together: of pairs all are looked at.
+            let grow: Vec<Vec<usize>> = match size {
+                2 => entries.iter().map(|e| vec![*e]).collect(),
+                _ => beam.iter().map(known).collect(),
+            };
+            let pairs: Vec<Vec<usize>> = grow
                 .iter()
-                .flat_map(|set| {
-                    let is_new = move |e: &usize| self.pool.is_open(&known(set), *e);
-                    entries.iter().copied().filter(is_new).map(move |e| [known(set), vec![e]].concat())
+                .enumerate()
+                .flat_map(|(n, set)| {
+                    let is_new = move |e: &usize| self.pool.is_open(set, *e);
+                    let own = if size == 2 { &entries[n + 1..] } else { &entries[..] };
+                    own.iter().copied().filter(is_new).map(move |e| [&set[..], &[e]].concat())
                 })
                 .collect();
             let mut sets: Vec<Spoken> = pairs.par_iter().filter_map(|members| self.spoken(members, none)).collect();

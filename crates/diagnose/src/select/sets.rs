@@ -77,8 +77,8 @@ impl Ground<'_> {
         let mut best = none.score;
         let mut scores = Vec::new();
         let mut entries: Vec<usize> = (0..self.pool.entries.len()).collect();
-        for _ in 0..most {
-            let mut grown: Vec<LinearSet> = Vec::new();
+        for size in 1..=most {
+            let mut grown: Vec<LinearSet> = if size == 2 { self.pairs(none, &entries) } else { Vec::new() };
             for set in &beam {
                 let (sets, promised) = self.grown(set, &entries);
                 grown.extend(sets);
@@ -141,6 +141,27 @@ impl Ground<'_> {
         }
         let of = |entry: &usize| self.estimated(&[&known[..], &[*entry]].concat(), &set.spread);
         (chosen.par_iter().filter_map(of).collect(), promised)
+    }
+
+    /// The pairs that promise most: each of two effects alone may promise little of what they do together.
+    fn pairs(&self, none: &Estimate, among: &[usize]) -> Vec<LinearSet> {
+        let spread = none.spread.softened();
+        let k = self.products_of(among, &spread);
+        let score = self.solved(&k, &[], &spread).score;
+        let all = among.iter().enumerate().flat_map(|(n, a)| among[n + 1..].iter().map(move |b| (*a, *b)));
+        let open: Vec<(usize, usize)> = all.filter(|(a, b)| self.pool.is_open(&[*a], *b)).collect();
+        let of = |(a, b): &(usize, usize)| Some((self.promise(&k, (&[*a], *b), (&spread, score))?.criterion, [*a, *b]));
+        let mut promised: Vec<(f64, [usize; 2])> = open.par_iter().filter_map(of).collect();
+        promised.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut titles: Vec<Vec<String>> = Vec::new();
+        promised.retain(|(_, pair)| {
+            let own = self.pool.titles(pair.iter().copied());
+            let is_new = !titles.contains(&own);
+            titles.push(own);
+            is_new
+        });
+        promised.truncate(ESTIMATED);
+        promised.par_iter().filter_map(|(_, pair)| self.estimated(pair, &none.spread)).collect()
     }
 
     /// What one more entry promises at a spread, from the score of the set there; none where no such effect is possible.

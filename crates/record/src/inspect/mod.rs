@@ -4,11 +4,13 @@
 //! limits) and at the pairs that kinematics ties together ([`crate::consistency`]). It needs no model: whatever it finds
 //! is in the sensors, the units or the files.
 
+mod jitter;
 mod noise;
 mod quality;
 mod text;
 mod warn;
 
+pub use jitter::{duration, speeds, stamp_jitter};
 pub use noise::{White, white_noise, white_variance};
 pub use quality::{Clock, Spike, Stuck, at_limit, clock, spikes, stuck};
 pub use text::{said_once, to_text};
@@ -47,6 +49,8 @@ pub struct ChannelReport {
     pub noise: Option<f64>,
     /// White noise by the data sheet.
     pub stated: Option<f64>,
+    /// Standard deviation of its stamps, s, where its noise grows with its speed.
+    pub jitter_s: Option<f64>,
 }
 
 /// A run.
@@ -163,7 +167,13 @@ fn channel_report(set: &RecordingSet, channel: &str, series: &[&Series]) -> Chan
         rounding: median(series.iter().map(|s| s.quantum()).collect()).unwrap_or_default(),
         noise: if is_command { None } else { noise_of(set, channel) },
         stated: if is_command { None } else { set.sigma(channel) },
+        jitter_s: if is_command || is_orientation(channel) { None } else { jitter_of(series) },
     }
+}
+
+fn jitter_of(series: &[&Series]) -> Option<f64> {
+    let runs: Vec<(&[f64], &[f64])> = series.iter().map(|s| (&s.times[..], &s.values[..])).collect();
+    stamp_jitter(&runs)
 }
 
 /// Median over the runs.

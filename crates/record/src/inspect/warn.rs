@@ -1,5 +1,6 @@
 //! Sentences about what was measured: each names its run, its channel, a figure, and what to look at.
 
+use super::jitter::duration;
 use super::quality::{at_limit, clock, spikes, stuck};
 use super::{ChannelReport, is_orientation, sigma_of};
 use crate::consistency::Consistency;
@@ -18,6 +19,11 @@ pub(super) fn of_channels(set: &RecordingSet, channels: &[ChannelReport]) -> Vec
     let mut remarks = Vec::new();
     for report in channels {
         remarks.extend(noise(report));
+        if let Some(jitter) = report.jitter_s {
+            let what =
+                format!("its noise grows with its speed, as by stamps that jitter by {} (1 sigma)", duration(jitter));
+            remarks.push(Remark::new(Severity::Note, what).of_channel(&report.channel));
+        }
         if report.runs < set.runs.len() {
             let what = format!("is in {} of {} runs only", report.runs, set.runs.len());
             remarks.push(Remark::new(Severity::Note, what).of_channel(&report.channel));

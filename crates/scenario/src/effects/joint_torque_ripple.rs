@@ -51,9 +51,12 @@ const LONG: f64 = 2.0;
 /// Orders at which a ripple is screened.
 const ORDERS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0];
 
-/// Of waves that a joint has gone through, at least one: a part of one is as much of gravity, of an offset or of a spring.
+/// Waves that a joint has to go through: one of some phase is much like gravity, an offset and a spring together.
+const WAVES: f64 = 1.5;
+
+/// Of waves that a joint has gone through.
 fn candidates(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
-    let least = if joint.travel > 0.0 { std::f64::consts::TAU / joint.travel } else { 0.0 }.clamp(0.5, LARGEST);
+    let least = if joint.travel > 0.0 { WAVES * std::f64::consts::TAU / joint.travel } else { 0.0 }.clamp(0.5, LARGEST);
     let coordinates = vec![
         Coordinate::free("amplitude", 0.0),
         Coordinate::free("phase", 0.0),
