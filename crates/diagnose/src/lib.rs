@@ -69,6 +69,7 @@ mod together;
 mod uncertainty;
 mod unheard;
 mod vocabulary;
+mod waves;
 pub mod words;
 pub mod work;
 

@@ -39,6 +39,8 @@ pub struct WindowForce {
     pub estimate: Vec<f64>,
     /// Their standard errors.
     pub error: Vec<f64>,
+    /// Their information matrix A.
+    pub information: DMatrix<f64>,
 }
 
 /// Missing forces of a fit.
@@ -236,5 +238,6 @@ fn window(k: &DMatrix<f64>, first: usize, width: usize) -> WindowForce {
         rank: (0..width).filter(|i| a[(*i, *i)] > 0.0).count(),
         estimate: estimate.iter().copied().collect(),
         error: (0..width).map(|i| inverse[(i, i)].max(0.0).sqrt()).collect(),
+        information: a,
     }
 }

@@ -14,10 +14,12 @@ use crate::linear::{Segment, Stage};
 use crate::locate::{Located, locate, places};
 use crate::lost;
 use crate::plant::Plant;
+use crate::replay::Span;
 use crate::search::{Candidates, Limits, WHOLE, errors, search};
 use crate::standing::{Standing, follow};
 use crate::stretches::{self, Stretches};
 use crate::tape::Tape;
+use crate::waves::{is_told_in_waves, waves};
 
 /// Limits of the search.
 const LIMITS: Limits = Limits { effects: 6, refits: 6, ends: 2 };
@@ -52,12 +54,20 @@ pub(crate) fn seek(
     clock.stage("search", 0.25);
     let (standing, whole) = stood(stage, plant, (&nominal, window))?;
     let candidates = |stage: &Stage<'_>, now: &Fit| {
-        let facts = Facts::new(&now.built, tapes).of_parts(&own_parts);
-        let joints = places(&facts, window).into_iter().filter(|p| p.name.starts_with("joint:")).collect();
+        let own = Facts::new(&now.built, tapes).of_parts(&own_parts);
+        let window = median_length(&now.segments);
+        let pushed = places(&own, window).into_iter().filter(is_told_in_waves).collect();
+        let here = locate(stage, plant, now, pushed)?;
+        let spans: Vec<(usize, Span)> = now.segments.iter().map(|s| (s.run, s.span)).collect();
+        let facts = Facts { lines: waves(&here, &spans, window), ..own };
+        if !facts.lines.is_empty() {
+            let list: Vec<String> = facts.lines.iter().map(|f| format!("{f:.4} Hz")).collect();
+            stage.work.watch.step(&format!("waves at {}", list.join(", ")));
+        }
         let all = hypotheses(&facts);
         // Numbers that may be off by a tolerance take a force on as far as they can.
         let is_unique = plant.scenario.tolerance.is_exact();
-        Ok(if is_unique { promising(&locate(stage, plant, now, joints)?, all) } else { all })
+        Ok(if is_unique { promising(&here, all) } else { all })
     };
     let (rivals, (standing, attempts)) = match flown::found(stage, plant, &standing, (&nominal, &own_parts, window)) {
         Some(flown) => (flown.rivals.clone(), beside_flights(stage, plant, (&nominal, window, flown), &candidates)?),
@@ -157,9 +167,17 @@ fn loosened(stage: &Stage<'_>, plant: &Plant, nominal: Standing) -> Result<Stand
     Ok(loose)
 }
 
+/// Median length of some windows, s.
+fn median_length(segments: &[Segment]) -> f64 {
+    let mut lengths: Vec<f64> = segments.iter().map(|s| s.span.to - s.span.from).collect();
+    lengths.sort_by(f64::total_cmp);
+    lengths.get(lengths.len() / 2).copied().unwrap_or(1.0)
+}
+
 /// Effects at joints where no force is missing are not looked at: an arm has many places.
 fn promising(located: &Located, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {
-    let best = located.ranked().first().map_or(0.0, |p| located.share(*p));
+    let joints = (0..located.places.len()).filter(|p| located.places[*p].name.starts_with("joint:"));
+    let best = joints.map(|p| located.share(p)).fold(0.0, f64::max);
     let is_dull = |place: &str| {
         let at = located.places.iter().position(|p| p.name == place);
         place.starts_with("joint:") && at.is_some_and(|p| located.share(p) < DULL * best)
