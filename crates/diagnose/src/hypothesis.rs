@@ -165,7 +165,9 @@ impl Hypothesis {
             let moving = (0..x.len()).filter(|k| columns.iter().any(|c| c.direction[*k] != 0.0));
             let is_level = |k: &usize| self.coordinates[*k].bounds.contains(&self.coordinates[*k].neutral);
             let mut levels = moving.clone().filter(is_level).peekable();
-            let explains = levels.peek().is_none() || !levels.all(lost);
+            // A spring that would have to push is not the force that it begins with.
+            let is_slack = matches!(self.encoding, Encoding::Anchored | Encoding::Rested) && lost(0);
+            let explains = !is_slack && (levels.peek().is_none() || !levels.all(lost));
             return (explains && !moving.clone().all(lost)).then_some(clamped);
         }
         let strength: f64 = amplitudes.iter().sum();

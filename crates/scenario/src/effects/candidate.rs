@@ -85,9 +85,9 @@ pub enum Encoding {
     Direct,
     /// (m, m·com): a point mass.
     Moment,
-    /// (k, k·anchor, d): a spring to a point.
+    /// (k, k·anchor, d): a spring to a point. Next to k = 0 the others are a force.
     Anchored,
-    /// (k, k·q_rest).
+    /// (k, k·q_rest): the same of a joint.
     Rested,
     /// (i, ln rate): damper inertia, and torque per speed and inertia.
     RateOfInertia,
@@ -138,9 +138,13 @@ impl Encoding {
             }
             Self::Moment => vec![plain[0], over(1, value(0)), over(2, value(0)), over(3, value(0))],
             Self::Anchored => {
-                vec![plain[0], over(1, value(0)), over(2, value(0)), over(3, value(0)), plain[4]]
+                let k = stiffness(value(0), &x[1..4]);
+                vec![(plain[0].0, k), over(1, k), over(2, k), over(3, k), plain[4]]
             }
-            Self::Rested => vec![plain[0], over(1, value(0))],
+            Self::Rested => {
+                let k = stiffness(value(0), &x[1..2]);
+                vec![(plain[0].0, k), over(1, k)]
+            }
             Self::RateOfInertia => vec![plain[0], (plain[1].0, value(0) * value(1))],
             Self::Squared => vec![(plain[0].0, value(0).max(0.0).sqrt())],
             Self::Ellipse => {
@@ -163,6 +167,14 @@ impl Encoding {
         }
     }
 }
+
+/// Stiffness of a spring that pulls to a point with a force: where it is zero, so little that the force is as good as constant.
+fn stiffness(k: f64, forces: &[f64]) -> f64 {
+    if k == 0.0 && forces.iter().any(|f| *f != 0.0) { SLACK } else { k }
+}
+
+/// Stiffness, N/m or N m/rad, that is next to nothing.
+const SLACK: f64 = 1e-9;
 
 /// Where a candidate is screened.
 #[derive(Clone, Debug, PartialEq)]
