@@ -31,6 +31,8 @@ pub struct Facts {
     pub gravity: [f64; 3],
     /// Longest run, s.
     pub duration: f64,
+    /// Highest frequency that samples tell from lower ones, Hz.
+    pub highest: f64,
     /// Frequencies at which what a model leaves swings, Hz; none before that was looked at.
     pub lines: Vec<f64>,
 }
@@ -56,6 +58,7 @@ impl Facts {
             sensors,
             gravity: built.model.calc_field(0.0, &spatial::Vec3::zeros()).into(),
             duration: tapes.iter().map(|t| t.span.1 - t.span.0).fold(0.0, f64::max),
+            highest: 0.5 * tapes.iter().map(|t| t.rate).fold(0.0, f64::max),
             lines: Vec::new(),
         }
     }
@@ -64,15 +67,15 @@ impl Facts {
     #[cfg(test)]
     pub(crate) fn of_joints(count: usize) -> Self {
         let joint = |k: usize| JointFact { name: format!("j{k}"), coordinate: k, ..JointFact::default() };
-        Self { joints: (0..count).map(joint).collect(), duration: 1.0, ..Self::default() }
+        Self { joints: (0..count).map(joint).collect(), duration: 1.0, highest: f64::INFINITY, ..Self::default() }
     }
 }
 
 impl Facts {
     /// What a definition may look at around a place.
     pub fn survey(&self) -> Survey<'_> {
-        let Self { joints, bodies, contacts, gravity, duration, lines, .. } = self;
-        Survey { joints, bodies, contacts, gravity: *gravity, duration: *duration, lines }
+        let Self { joints, bodies, contacts, gravity, duration, highest, lines, .. } = self;
+        Survey { joints, bodies, contacts, gravity: *gravity, duration: *duration, highest: *highest, lines }
     }
 
     /// Without the joints and bodies that effects have brought: a mount's tip has no friction of its own. What is touched at other times is not free of torques.

@@ -240,6 +240,7 @@ mod tests {
             offsets: Vec::new(),
             ticks: Vec::new(),
             span: (0.0, 2.0),
+            rate: 10.0,
             coarser: Vec::new(),
         }
     }

@@ -28,6 +28,14 @@ pub struct Place {
     pub columns: Vec<(String, Effect, f64)>,
 }
 
+impl Place {
+    /// Whether its columns are threes of a mean and half a wave each.
+    pub(crate) fn is_told_in_waves(&self) -> bool {
+        let is_wave = |column: &(String, Effect, f64)| column.1.name == effects::PERIODIC_DISTURBANCE.name;
+        self.columns.len().is_multiple_of(3) && self.columns.iter().all(is_wave)
+    }
+}
+
 /// What a window says of one place.
 #[derive(Clone, Debug)]
 pub struct WindowForce {

@@ -11,7 +11,7 @@ use crate::fit::{Effort, Fit, fit};
 use crate::flown::{self, Flown};
 use crate::hypothesis::Hypothesis;
 use crate::linear::{Segment, Stage};
-use crate::locate::{Located, locate, places};
+use crate::locate::{Located, Place, locate, places};
 use crate::lost;
 use crate::plant::Plant;
 use crate::replay::Span;
@@ -19,7 +19,7 @@ use crate::search::{Candidates, Limits, WHOLE, errors, search};
 use crate::standing::{Standing, follow};
 use crate::stretches::{self, Stretches};
 use crate::tape::Tape;
-use crate::waves::{is_told_in_waves, waves};
+use crate::waves::waves;
 
 /// Limits of the search.
 const LIMITS: Limits = Limits { effects: 6, refits: 6, ends: 2 };
@@ -56,7 +56,7 @@ pub(crate) fn seek(
     let candidates = |stage: &Stage<'_>, now: &Fit| {
         let own = Facts::new(&now.built, tapes).of_parts(&own_parts);
         let window = median_length(&now.segments);
-        let pushed = places(&own, window).into_iter().filter(is_told_in_waves).collect();
+        let pushed = places(&own, window).into_iter().filter(Place::is_told_in_waves).collect();
         let here = locate(stage, plant, now, pushed)?;
         let spans: Vec<(usize, Span)> = now.segments.iter().map(|s| (s.run, s.span)).collect();
         let facts = Facts { lines: waves(&here, &spans, window), ..own };

@@ -79,6 +79,8 @@ pub struct Tape {
     pub ticks: Vec<f64>,
     /// First and last sample, s.
     pub span: (f64, f64),
+    /// Samples per second of its fastest sensor, as it was recorded; infinite where nothing is sampled twice.
+    pub rate: f64,
     /// The same commands at coarser clocks, the finest first.
     pub(crate) coarser: Vec<Hearing>,
 }
@@ -151,7 +153,7 @@ impl Tape {
         };
         let readings = self.readings.iter().map(thin).collect();
         // A run ends where it ends, however thinly it is sampled.
-        Self { span: self.span, ..self.with_readings(readings) }
+        Self { span: self.span, rate: self.rate, ..self.with_readings(readings) }
     }
 
     /// A part of the run, with the channels that are wanted.
@@ -212,7 +214,9 @@ impl Tape {
             offsets.push(offsets[offsets.len() - 1] + readings[event.reading as usize].width());
         }
         let file = file.to_owned();
-        Self { index: 0, file, role, commands, readings, events, offsets, ticks, span, coarser: Vec::new() }
+        let rate = readings.iter().map(|r| median_step(&r.times)).fold(f64::INFINITY, f64::min).recip();
+        let rate = if rate > 0.0 { rate } else { f64::INFINITY };
+        Self { index: 0, file, role, commands, readings, events, offsets, ticks, span, rate, coarser: Vec::new() }
     }
 
     /// The events of a span: those at its end belong to the next, but for the run's last.
@@ -250,12 +254,17 @@ pub(crate) fn judging(tapes: &[Tape]) -> Role {
 /// Ticks of an even clock at which samples were taken, those that were left out counted too, so that sensors which read together stay
 /// together when they are thinned; the numbers of the samples where the clock is not even.
 fn ticks_of(times: &[f64]) -> Vec<usize> {
-    let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    let step = steps.get(steps.len() / 2).copied().unwrap_or(1.0);
+    let step = Some(median_step(times)).filter(|s| s.is_finite()).unwrap_or(1.0);
     let since = |t: &f64| (t - times[0]) / step;
     let is_even = times.iter().all(|t| (since(t) - since(t).round()).abs() < EVEN);
     if is_even { times.iter().map(|t| since(t).round() as usize).collect() } else { (0..times.len()).collect() }
+}
+
+/// Median step of a clock, s; infinite where it ticks once.
+fn median_step(times: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY)
 }
 
 /// Share of a step by which an even clock's samples may be off their ticks.

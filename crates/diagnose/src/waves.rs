@@ -9,7 +9,7 @@
 //! screen to say.
 
 use crate::fit::pseudo_inverse;
-use crate::locate::{Located, Place, WindowForce};
+use crate::locate::{Located, WindowForce};
 use crate::replay::Span;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rayon::prelude::*;
@@ -42,7 +42,7 @@ pub(crate) fn waves(located: &Located, windows: &[(usize, Span)], window: f64) -
     }
     let grid: Vec<f64> =
         (1..).map(|k| (CYCLES + f64::from(k) / BY_BIN) / longest).take_while(|f| *f < FOLLOWED / window).collect();
-    let places = (0..located.places.len()).filter(|p| is_told_in_waves(&located.places[*p]));
+    let places = (0..located.places.len()).filter(|p| located.places[*p].is_told_in_waves());
     let mut peaks: Vec<(f64, f64)> = places
         .flat_map(|place| {
             let told: Vec<Vec<Told<'_>>> = runs.iter().map(|run| told(located, windows, (*run, place))).collect();
@@ -59,12 +59,6 @@ pub(crate) fn waves(located: &Located, windows: &[(usize, Span)], window: f64) -
         }
     }
     found
-}
-
-/// Whether the columns of a place are threes of a mean and half a wave each.
-pub(crate) fn is_told_in_waves(place: &Place) -> bool {
-    let columns = &place.columns;
-    columns.len().is_multiple_of(3) && columns.iter().all(|(_, effect, _)| effect.name == "periodic-disturbance")
 }
 
 /// What one window tells of a place.
@@ -118,7 +112,7 @@ fn parts_of(span: Span, f: f64, window: f64) -> [Vector3<f64>; 2] {
     of.map(|x| inverse * x)
 }
 
-/// Peaks of a periodogram that stand out of their surroundings, and by how much.
+/// Peaks of a periodogram that stand out of their surroundings, and what they take: where samples are missing at a beat, a wave has lesser ones beside it.
 fn peaks_of(grid: &[f64], power: &[f64]) -> Vec<(f64, f64)> {
     let around = SURROUNDINGS * BY_BIN as usize / 2;
     let height = |i: usize| {
@@ -128,7 +122,7 @@ fn peaks_of(grid: &[f64], power: &[f64]) -> Vec<(f64, f64)> {
     };
     let is_peak = |i: &usize| power[*i] > power[*i - 1] && power[*i] >= power[*i + 1];
     let inner = 1..power.len().saturating_sub(1).max(1);
-    inner.filter(is_peak).map(|i| (grid[i], height(i))).filter(|(_, height)| *height > LOUD).collect()
+    inner.filter(is_peak).filter(|i| height(*i) > LOUD).map(|i| (grid[i], power[i])).collect()
 }
 
 #[cfg(test)]

@@ -141,8 +141,8 @@ fn explanation(diagnosis: &Diagnosis) -> Option<String> {
             Some(format!("{part} of it is explained by {list}. {}", remainder_words(diagnosis)))
         }
         _ => Some(
-            "No effect of the library helps on runs that were left out of the fit, alone or with others; what the residual itself shows stands \
-             below."
+            "No effect of the library helps on runs that were left out of the fit, alone or with others; below stands where the \
+             mismatch sits, when, and on what it depends as far as the residuals show that."
                 .to_owned(),
         ),
     }

@@ -73,6 +73,7 @@ fn candidates(effect: &EffectDef) -> Vec<Candidate> {
         contacts: std::slice::from_ref(&contact),
         gravity: [0.0; 3],
         duration: 40.0,
+        highest: 500.0,
         lines: &[0.37],
     };
     let of = &effect.identify.candidates;
@@ -143,7 +144,15 @@ fn a_linear_contact_is_looked_at_without_an_exponent() {
 #[test]
 fn what_is_asked_last_and_what_shows() {
     let [base, link] = bodies();
-    let survey = Survey { joints: &[], bodies: &[], contacts: &[], gravity: [0.0; 3], duration: 40.0, lines: &[] };
+    let survey = Survey {
+        joints: &[],
+        bodies: &[],
+        contacts: &[],
+        gravity: [0.0; 3],
+        duration: 40.0,
+        highest: 500.0,
+        lines: &[],
+    };
     for name in
         ["linear-drag", "quadratic-drag", "angular-damping", "constant-force", "constant-torque", "tether-stiffness"]
     {

@@ -108,6 +108,8 @@ pub struct Survey<'a> {
     pub gravity: [f64; 3],
     /// Longest run, s.
     pub duration: f64,
+    /// Highest frequency that samples tell from lower ones, Hz: half the rate of the fastest sensor (Nyquist 1928).
+    pub highest: f64,
     /// Frequencies at which what the model leaves swings, Hz.
     pub lines: &'a [f64],
 }

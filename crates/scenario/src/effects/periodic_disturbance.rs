@@ -67,14 +67,27 @@ fn load(entry: &Entry<'_>, faults: &mut Faults<'_>) -> Option<Load> {
     })
 }
 
+/// Highest frequency, Hz, whatever the samples tell.
+const FASTEST: f64 = 200.0;
+
+/// Highest frequency that is looked for, Hz: a faster wave is a slower one to the samples.
+fn highest(survey: &Survey<'_>) -> f64 {
+    survey.highest.clamp(1.0, FASTEST)
+}
+
+/// Frequencies at which a wave is screened, Hz: those at which something swings, and a grid.
+fn frequencies(survey: &Survey<'_>, grid: &[f64]) -> Vec<f64> {
+    [survey.lines, grid].concat().into_iter().filter(|f| *f <= highest(survey)).collect()
+}
+
 fn at_joint(joint: &JointFact, survey: &Survey<'_>) -> Vec<Candidate> {
     let coordinates = vec![
         Coordinate::free("amplitude", 0.0),
         Coordinate::free("phase", 0.0),
-        Coordinate::log("frequency", 1.0, [1.0 / survey.duration.max(1.0), 200.0]),
+        Coordinate::log("frequency", 1.0, [1.0 / survey.duration.max(1.0), highest(survey)]),
     ];
     let wave = Candidate::new(joint.place(), coordinates).encoded(Encoding::Phasor);
-    let grid = [survey.lines, &log_grid(0.5, 32.0, 1.0)].concat();
+    let grid = frequencies(survey, &log_grid(0.5, 32.0, 1.0));
     vec![wave.screened_on(2, &grid, &Along::each(0..2, SMALL)).expensive()]
 }
 
@@ -95,9 +108,9 @@ fn at_body(body: &BodyFact, survey: &Survey<'_>) -> Vec<Candidate> {
 fn swinging(body: &BodyFact, survey: &Survey<'_>, axes: &[Along]) -> Candidate {
     let mut coordinates = Coordinate::vector(["amplitude[0]", "amplitude[1]", "amplitude[2]"], [0.0; 3]);
     coordinates.push(Coordinate::free("phase", 0.0));
-    coordinates.push(Coordinate::log("frequency", 1.0, [0.5 / survey.duration.max(1.0), 200.0]));
+    coordinates.push(Coordinate::log("frequency", 1.0, [0.5 / survey.duration.max(1.0), highest(survey)]));
     let mut wave = Candidate::new(body.place(), coordinates).expensive();
-    for f in [survey.lines, &log_grid(2.0 / survey.duration.max(1.0), 16.0, 1.0)].concat() {
+    for f in frequencies(survey, &log_grid(2.0 / survey.duration.max(1.0), 16.0, 1.0)) {
         let at = |quarter: f64| {
             let mut base = wave.neutral();
             (base[3], base[4]) = (quarter, f.ln());
