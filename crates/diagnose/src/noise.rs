@@ -204,8 +204,7 @@ impl Noise {
                 s.channel.strip_prefix(channel.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
                     && (set.sigma(&s.channel).or_else(|| set.sigma(channel))).is_some()
             });
-            let square: f64 = stretches.iter().flatten().map(|r| r * r).sum();
-            let whole = (square / f64::max(samples, 1.0)).sqrt();
+            let whole = typical_rms(&slices);
             let found = Found { white: part.variance.sqrt(), is_floor: part.is_floor, whole };
             let Some(factor) = factor_of(found, is_stated).filter(|f| *f > AT_REST) else { continue };
             // What a coarse encoder reads of a slow motion stays the same from sample to sample, and is wrong by its rounding.
@@ -243,6 +242,20 @@ impl Noise {
     }
 }
 
+/// Root mean square that half of the samples are in windows of no more than: coloured noise is in all windows, what a model misses may be in some.
+fn typical_rms(stretches: &[&[f64]]) -> f64 {
+    let square = |s: &&[f64]| s.iter().map(|r| r * r).sum::<f64>() / s.len().max(1) as f64;
+    let mut each: Vec<(f64, usize)> = stretches.iter().map(|s| (square(s), s.len())).collect();
+    each.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = each.iter().map(|s| s.1).sum::<usize>().div_ceil(2);
+    let mut before = 0;
+    let is_middle = |s: &&(f64, usize)| {
+        before += s.1;
+        before >= half
+    };
+    each.iter().find(is_middle).map_or(f64::NAN, |s| s.0.sqrt())
+}
+
 /// Factor at which the noise of a channel is its rounding.
 fn least_factor(tapes: &[Tape], channel: &str) -> f64 {
     let own = tapes.iter().flat_map(|t| &t.readings).filter(|r| r.channel == channel && r.sigma > 0.0);
@@ -256,7 +269,7 @@ struct Found {
     white: f64,
     /// Whether all orders of difference agree about it.
     is_floor: bool,
-    /// Of all of them.
+    /// Of all of them, in the typical window.
     whole: f64,
 }
 
@@ -323,6 +336,14 @@ pub(crate) fn refuse_silent(tapes: &[Tape]) -> Result<(), DiagnoseError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_a_model_misses_in_some_windows_is_no_noise() {
+        let (quiet, loud) = ([0.7; 20], [9.0; 19]);
+        assert!((typical_rms(&[&quiet, &loud]) - 0.7).abs() < 1e-12);
+        assert!((typical_rms(&[&quiet, &loud, &loud]) - 9.0).abs() < 1e-12, "in most");
+        assert!(typical_rms(&[]).is_nan());
+    }
 
     #[test]
     fn a_stated_figure_is_believed_within_some_per_cent_and_left_by_far_only_for_white_noise() {
