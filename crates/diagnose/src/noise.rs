@@ -18,7 +18,7 @@ use crate::reading::Reading;
 use crate::tape::Tape;
 use rayon::prelude::*;
 use record::inspect::{Spike, Stuck, spikes, stuck, white_noise, white_variance};
-use record::{RecordedRun, RecordingSet, Role, Series};
+use record::{RecordedRun, RecordingSet, Role, Series, median_step};
 use std::collections::BTreeMap;
 
 /// Relative difference from a stated σ that the samples must show to be believed against it: an estimate is sure to some per cent.
@@ -132,9 +132,7 @@ fn clean_reading(run: &RecordedRun, reading: &Reading, said: &mut LeftOut) -> Op
         return None;
     }
     found.iter().for_each(|b| said.add(&reading.channel, b));
-    let times = kept.iter().map(|i| reading.times[*i]).collect();
-    let blur = reading.blur_of(kept.iter().copied());
-    Some(Reading { axes, times, blur, values: kept.iter().map(|i| reading.values[*i]).collect(), ..reading.clone() })
+    Some(Reading { axes, ..reading.of_samples(&kept) })
 }
 
 /// What is wrong with the samples of one component.
@@ -304,9 +302,8 @@ fn stretches_of(stage: &Stage<'_>, fit: &Fit, segment: &crate::linear::Segment) 
     let mut all = Vec::new();
     for (k, reading) in tape.readings.iter().enumerate() {
         let own: Vec<usize> = range.clone().filter(|i| tape.events[*i].reading as usize == k).collect();
-        let mut steps: Vec<f64> = own.windows(2).map(|w| tape.events[w[1]].time - tape.events[w[0]].time).collect();
-        steps.sort_by(f64::total_cmp);
-        let pause = PAUSE * steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
+        let times: Vec<f64> = own.iter().map(|i| tape.events[*i].time).collect();
+        let pause = PAUSE * median_step(&times).unwrap_or(f64::INFINITY);
         let is_next = |a: &usize, b: &usize| tape.events[*b].time - tape.events[*a].time <= pause;
         for stretch in own.chunk_by(is_next) {
             for component in 0..reading.width() {

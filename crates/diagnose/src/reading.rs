@@ -78,9 +78,21 @@ impl Reading {
         self.times.iter().zip(&self.values).filter(move |(_, v)| is_loud(v)).map(|(t, _)| *t)
     }
 
-    /// What stamps do to some samples.
-    pub(crate) fn blur_of(&self, samples: impl Iterator<Item = usize>) -> Vec<Vec3> {
-        if self.blur.is_empty() { Vec::new() } else { samples.map(|i| self.blur[i]).collect() }
+    /// Some of its samples, with all that belongs to each.
+    pub(crate) fn of_samples(&self, samples: &[usize]) -> Self {
+        let blur = if self.blur.is_empty() { Vec::new() } else { samples.iter().map(|i| self.blur[*i]).collect() };
+        let (times, values) = samples.iter().map(|i| (self.times[*i], self.values[*i])).unzip();
+        Self {
+            channel: self.channel.clone(),
+            quantity: self.quantity,
+            axes: self.axes.clone(),
+            sigma: self.sigma,
+            rounding: self.rounding,
+            times,
+            values,
+            blur,
+            late_s: self.late_s,
+        }
     }
 
     /// Residual of sample `i` in units of noise, written to the front of `out`.

@@ -16,6 +16,7 @@ use crate::lost;
 use crate::plant::Plant;
 use crate::replay::Span;
 use crate::search::{Candidates, Limits, WHOLE, errors, search};
+use crate::select::lines::say;
 use crate::standing::{Standing, follow};
 use crate::stretches::{self, Stretches};
 use crate::tape::Tape;
@@ -60,10 +61,7 @@ pub(crate) fn seek(
         let here = locate(stage, plant, now, pushed)?;
         let spans: Vec<(usize, Span)> = now.segments.iter().map(|s| (s.run, s.span)).collect();
         let facts = Facts { lines: waves(&here, &spans, window), ..own };
-        if !facts.lines.is_empty() {
-            let list: Vec<String> = facts.lines.iter().map(|f| format!("{f:.4} Hz")).collect();
-            stage.work.watch.step(&format!("waves at {}", list.join(", ")));
-        }
+        say(stage.work.watch, "waves", &facts.lines);
         let all = hypotheses(&facts);
         // Numbers that may be off by a tolerance take a force on as far as they can.
         let is_unique = plant.scenario.tolerance.is_exact();

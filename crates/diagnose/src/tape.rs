@@ -8,7 +8,7 @@ use crate::plant::{Built, Plant};
 use crate::reading::{Reading, Value};
 use crate::replay::{SAME, Span};
 use crate::unheard;
-use record::{RecordedRun, RecordingSet, Role, Series};
+use record::{RecordedRun, RecordingSet, Role, Series, median_step};
 use scenario::measure::{MeasureError, Quantity};
 use sim::Model;
 use spatial::{Rot, Vec3, nalgebra};
@@ -144,12 +144,7 @@ impl Tape {
             let every = r.times.len().div_ceil(most).max(1);
             let kept: Vec<usize> =
                 ticks_of(&r.times).into_iter().enumerate().filter(|(_, k)| k % every == 0).map(|k| k.0).collect();
-            Reading {
-                times: kept.iter().map(|i| r.times[*i]).collect(),
-                values: kept.iter().map(|i| r.values[*i]).collect(),
-                blur: r.blur_of(kept.iter().copied()),
-                ..r.clone()
-            }
+            r.of_samples(&kept)
         };
         let readings = self.readings.iter().map(thin).collect();
         // A run ends where it ends, however thinly it is sampled.
@@ -160,9 +155,7 @@ impl Tape {
     pub(crate) fn within(&self, Span { from, to }: Span, is_wanted: impl Fn(&str) -> bool) -> Self {
         let part = |r: &Reading| {
             let range = r.times.partition_point(|t| *t < from)..r.times.partition_point(|t| *t <= to);
-            let blur = r.blur_of(range.clone());
-            let (times, values) = (r.times[range.clone()].to_vec(), r.values[range].to_vec());
-            Reading { times, values, blur, ..r.clone() }
+            r.of_samples(&range.collect::<Vec<usize>>())
         };
         let readings = self.readings.iter().filter(|r| is_wanted(&r.channel)).map(part);
         self.with_readings(readings.filter(|r| !r.times.is_empty()).collect())
@@ -214,7 +207,11 @@ impl Tape {
             offsets.push(offsets[offsets.len() - 1] + readings[event.reading as usize].width());
         }
         let file = file.to_owned();
-        let rate = readings.iter().map(|r| median_step(&r.times)).fold(f64::INFINITY, f64::min).recip();
+        let rate = readings
+            .iter()
+            .map(|r| median_step(&r.times).unwrap_or(f64::INFINITY))
+            .fold(f64::INFINITY, f64::min)
+            .recip();
         let rate = if rate > 0.0 { rate } else { f64::INFINITY };
         Self { index: 0, file, role, commands, readings, events, offsets, ticks, span, rate, coarser: Vec::new() }
     }
@@ -254,17 +251,10 @@ pub(crate) fn judging(tapes: &[Tape]) -> Role {
 /// Ticks of an even clock at which samples were taken, those that were left out counted too, so that sensors which read together stay
 /// together when they are thinned; the numbers of the samples where the clock is not even.
 fn ticks_of(times: &[f64]) -> Vec<usize> {
-    let step = Some(median_step(times)).filter(|s| s.is_finite()).unwrap_or(1.0);
+    let step = median_step(times).unwrap_or(1.0);
     let since = |t: &f64| (t - times[0]) / step;
     let is_even = times.iter().all(|t| (since(t) - since(t).round()).abs() < EVEN);
     if is_even { times.iter().map(|t| since(t).round() as usize).collect() } else { (0..times.len()).collect() }
-}
-
-/// Median step of a clock, s; infinite where it ticks once.
-fn median_step(times: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY)
 }
 
 /// Share of a step by which an even clock's samples may be off their ticks.

@@ -11,6 +11,7 @@
 use crate::fit::pseudo_inverse;
 use crate::locate::{Located, WindowForce};
 use crate::replay::Span;
+use crate::select::lines::told_apart;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -52,13 +53,7 @@ pub(crate) fn waves(located: &Located, windows: &[(usize, Span)], window: f64) -
         })
         .collect();
     peaks.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut found: Vec<f64> = Vec::new();
-    for (frequency, _) in peaks {
-        if found.len() < MOST && found.iter().all(|f| (f - frequency).abs() > 1.0 / longest) {
-            found.push(frequency);
-        }
-    }
-    found
+    told_apart(peaks.into_iter().map(|p| p.0), longest, MOST)
 }
 
 /// What one window tells of a place.

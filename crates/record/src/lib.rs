@@ -39,5 +39,7 @@ pub use log::{ContactSample, Event, EventKind, Log, Meta, Sample};
 pub use mesh::{TriangleMesh, docking_of_geometry, triangulate};
 pub use observe::{Function, Probe, Recorder, RecorderPlan, SampleSink, standard_channels};
 pub use parquet_file::{SIGNALS_FORMAT, encode_parquet, read_parquet, write_parquet};
-pub use recording::{ChannelName, Format, Quantity, RecordedRun, RecordingSet, Remark, Role, Series, Severity, units};
+pub use recording::{
+    ChannelName, Format, Quantity, RecordedRun, RecordingSet, Remark, Role, Series, Severity, median_step, units,
+};
 pub use scene::{Scene, SceneLink, SceneVehicle, Trail};

@@ -12,6 +12,8 @@ use super::gamma_quantile_over_mean;
 use crate::error::DiagnoseError;
 use crate::identify::fit::{Fitted, Problem};
 use crate::identify::track::{Base, Interval, Link, Track};
+use crate::work::Watch;
+use record::median_step;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 use std::collections::BTreeMap;
@@ -61,13 +63,26 @@ pub fn lines(problem: &Problem<'_>, now: &Fitted) -> Result<Vec<f64>, DiagnoseEr
     let mut peaks: Vec<Peak> = all.values().flat_map(|runs| peaks_of(&mut planner, runs)).collect();
     peaks.sort_by(|a, b| b.height.total_cmp(&a.height));
     let longest = now.tracks.iter().map(length).fold(0.0, f64::max);
+    Ok(told_apart(peaks.into_iter().map(|p| p.frequency), longest, MOST))
+}
+
+/// The first frequencies, at most so many, that a run of some length tells apart, Hz.
+pub(crate) fn told_apart(all: impl Iterator<Item = f64>, longest: f64, most: usize) -> Vec<f64> {
     let mut found: Vec<f64> = Vec::new();
-    for peak in peaks {
-        if found.len() < MOST && found.iter().all(|f| (f - peak.frequency).abs() > 1.0 / longest) {
-            found.push(peak.frequency);
+    for frequency in all {
+        if found.len() < most && found.iter().all(|f| (f - frequency).abs() > 1.0 / longest) {
+            found.push(frequency);
         }
     }
-    Ok(found)
+    found
+}
+
+/// Says at which frequencies there is something.
+pub(crate) fn say(watch: &dyn Watch, what: &str, frequencies: &[f64]) {
+    if !frequencies.is_empty() {
+        let list: Vec<String> = frequencies.iter().map(|f| format!("{f:.4} Hz")).collect();
+        watch.step(&format!("{what} at {}", list.join(", ")));
+    }
 }
 
 fn length(track: &Track) -> f64 {
@@ -94,9 +109,7 @@ fn residuals_of(problem: &Problem<'_>, track: &Track, bases: &[Base]) -> Vec<((u
 
 /// Samples on the even clock that most of them keep.
 fn even(samples: &[(f64, f64)]) -> Option<Series> {
-    let mut steps: Vec<f64> = samples.windows(2).map(|w| w[1].0 - w[0].0).collect();
-    steps.sort_by(f64::total_cmp);
-    let step = *steps.get(steps.len() / 2)?;
+    let step = median_step(&samples.iter().map(|s| s.0).collect::<Vec<f64>>())?;
     let (from, to) = (samples.first()?.0, samples.last()?.0);
     let count = ((to - from) / step).round() as usize + 1;
     if samples.len() < FEWEST || count > LONGEST {

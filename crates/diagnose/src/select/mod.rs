@@ -10,7 +10,7 @@ mod enough;
 mod exchange;
 mod kin;
 mod left;
-mod lines;
+pub(crate) mod lines;
 pub mod pool;
 pub mod regression;
 mod rounds;

@@ -85,6 +85,17 @@ impl Pool {
         titles
     }
 
+    /// Keeps the first of those whose entries are alike.
+    pub fn keep_unlike<T>(&self, all: &mut Vec<T>, entries: impl Fn(&T) -> Vec<usize>) {
+        let mut seen: Vec<Vec<String>> = Vec::new();
+        all.retain(|one| {
+            let titles = self.titles(entries(one).into_iter());
+            let is_new = !seen.contains(&titles);
+            seen.push(titles);
+            is_new
+        });
+    }
+
     /// Price of some entries together, for so many residuals.
     pub fn price(&self, entries: &[usize], count: usize) -> f64 {
         entries.iter().map(|e| price(self.of(*e), count, self.hypotheses.len())).sum()

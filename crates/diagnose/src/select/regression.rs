@@ -120,14 +120,9 @@ impl<'a> Regression<'a> {
             if size == 1 {
                 entries = sets.iter().map(|s| s.members[0].0).take(TAKING_PART).collect();
             }
-            let mut titles: Vec<Vec<String>> = Vec::new();
             let best = beam.first().map_or(0.0, |b| b.criterion);
-            sets.retain(|s| {
-                let own = self.pool.titles(s.members.iter().map(|m| m.0));
-                let is_new = s.criterion < best && !titles.contains(&own);
-                titles.push(own);
-                is_new
-            });
+            sets.retain(|s| s.criterion < best);
+            self.pool.keep_unlike(&mut sets, known);
             sets.truncate(GROWN);
             if sets.is_empty() {
                 break;

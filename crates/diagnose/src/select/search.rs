@@ -5,7 +5,7 @@ use super::exchange::{exchanged, united};
 use super::gamma_quantile_over_mean;
 use super::kin::alone_of_their_kind;
 use super::left::{Left, is_as_quiet, quieting};
-use super::lines::lines;
+use super::lines::{lines, say};
 use super::pool::{Pool, price};
 use super::regression::{Regression, Spoken};
 use super::rounds::{Bounds, PROMISING, fit_sets};
@@ -581,9 +581,6 @@ pub(super) fn names(set: &EffectSet) -> String {
 /// Hypotheses about a model's own parts, and about what swings in what a fit of it leaves.
 pub fn hypotheses_of(problem: &Problem<'_>, now: &Fitted, own: &Facts) -> Result<Vec<Hypothesis>, DiagnoseError> {
     let facts = Facts { lines: lines(problem, now)?, ..Facts::new(&now.built, problem.stage.tapes).of_parts(own) };
-    if !facts.lines.is_empty() {
-        let list: Vec<String> = facts.lines.iter().map(|f| format!("{f:.4} Hz")).collect();
-        problem.stage.work.watch.step(&format!("lines at {}", list.join(", ")));
-    }
+    say(problem.stage.work.watch, "lines", &facts.lines);
     Ok(crate::catalogue::hypotheses(&facts))
 }

@@ -153,13 +153,7 @@ impl Ground<'_> {
         let of = |(a, b): &(usize, usize)| Some((self.promise(&k, (&[*a], *b), (&spread, score))?.criterion, [*a, *b]));
         let mut promised: Vec<(f64, [usize; 2])> = open.par_iter().filter_map(of).collect();
         promised.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut titles: Vec<Vec<String>> = Vec::new();
-        promised.retain(|(_, pair)| {
-            let own = self.pool.titles(pair.iter().copied());
-            let is_new = !titles.contains(&own);
-            titles.push(own);
-            is_new
-        });
+        self.pool.keep_unlike(&mut promised, |(_, pair)| pair.to_vec());
         promised.truncate(ESTIMATED);
         promised.par_iter().filter_map(|(_, pair)| self.estimated(pair, &none.spread)).collect()
     }

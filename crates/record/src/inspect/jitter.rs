@@ -8,6 +8,8 @@
 //! of what is off, in groups of like speed, are a line over the squares of the speeds. What motion leaves of itself falls with the order of the
 //! polynomial and white noise does not, so that both orders have to agree.
 
+use crate::recording::median_step;
+
 /// Neighbours on each side.
 const SIDES: [usize; 2] = [2, 3];
 /// Groups of like speed, and samples that each has at least.
@@ -66,9 +68,7 @@ fn told(runs: &[(&[f64], &[f64])], sides: usize) -> Option<f64> {
 
 /// Square of the speed at each sample, and of what it is off its neighbours by, in units of the variance of one sample.
 fn off((times, values): (&[f64], &[f64]), sides: usize) -> Vec<[f64; 2]> {
-    let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    let pause = PAUSE * steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
+    let pause = PAUSE * median_step(times).unwrap_or(f64::INFINITY);
     let of = |i: usize| {
         let near: Vec<usize> = (i - sides..=i + sides).filter(|k| *k != i).collect();
         let is_whole = (i - sides..i + sides).all(|k| times[k + 1] - times[k] <= pause);

@@ -23,7 +23,7 @@ pub mod units;
 
 pub use channel_name::{ChannelName, Quantity};
 pub use save::Format;
-pub use series::Series;
+pub use series::{Series, median_step};
 
 use crate::RecordError;
 use std::collections::BTreeMap;

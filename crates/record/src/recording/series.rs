@@ -65,11 +65,13 @@ impl Series {
 
     /// Median time from sample to sample, s; 0 with fewer than two samples.
     pub fn median_step(&self) -> f64 {
-        let mut steps: Vec<f64> = self.times.windows(2).map(|t| t[1] - t[0]).collect();
-        if steps.is_empty() {
-            return 0.0;
-        }
-        let middle = steps.len() / 2;
-        *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+        median_step(&self.times).unwrap_or(0.0)
     }
+}
+
+/// Median time from instant to instant, s; none of fewer than two.
+pub fn median_step(times: &[f64]) -> Option<f64> {
+    let mut steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
+    let middle = steps.len() / 2;
+    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
