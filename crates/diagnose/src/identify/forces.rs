@@ -95,8 +95,9 @@ fn at<T: Clone + Default>(all: &mut Vec<T>, index: usize) -> &mut T {
     &mut all[index]
 }
 
-/// Rate that a small force leaves, rad/s or m/s, below which it moves nothing that shows.
-const UNMOVED: f64 = 1e-12;
+/// Rate that a small force leaves, rad/s or m/s, below which it moves nothing that shows: what is left of a base's translation where only its rotation is read
+/// is the tolerance of implicit steps (4e-11 in a satellite seen by its gyro alone, which made forces of 1e6 N likely).
+const UNMOVED: f64 = 1e-9;
 
 /// Forces that would by themselves move the rates as these move from interval to interval: beyond them nothing is unknown; none where it moves nothing. `steps`: changes
 /// of the state over an interval; `b`: ∂end/∂f of a typical one.
@@ -148,5 +149,16 @@ mod tests {
         // A force along x half a metre above the origin turns by −½ about z for each newton.
         assert_eq!((push.bases[0], push.bases[1].force), (Wrench::default(), Vec3::new(2.0, 0.0, 0.0)));
         assert_eq!(push.bases[1].moment, Vec3::new(0.0, 0.0, 1.0 - 2.0 * 0.5));
+    }
+
+    #[test]
+    fn a_force_that_moves_what_shows_by_rounding_is_none() {
+        let force = |size: f64| Force { place: String::new(), label: String::new(), along: Along::Joint(0), size };
+        let spin = [Freedom::Spin(0, 0), Freedom::Turn(0, 0)];
+        // ∂end/∂f of a torque of 0.1 kg m² over 6 s, and of a force whose 3.6e-4 N leave 4e-11 rad/s.
+        let b = DMatrix::from_row_slice(2, 2, &[60.0, 1e-7, 180.0, 0.0]);
+        let steps = [DVector::from_vec(vec![0.03, 0.1]), DVector::from_vec(vec![-0.03, 0.1])];
+        let found = first_spread(&spin, &[force(1e-5), force(3.6e-4)], &steps, &b);
+        assert!((found[0] - 0.03 / 60.0).abs() < 1e-15 && found[1] == 0.0, "{found}");
     }
 }

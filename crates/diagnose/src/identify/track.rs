@@ -370,8 +370,10 @@ impl Frame<'_> {
     ) -> Option<Passed> {
         let expected = interval.start.clone();
         let mut link = known.cloned();
+        let mut last: Option<Interval> = None;
         for pass in 1.. {
-            let (r, end) = self.shoot(self.built, run, interval, &interval.start)?;
+            let (r, end) = self.shoot_or_nearer(run, interval, last.as_ref())?;
+            last = Some(interval.clone());
             if link.is_none() || is_first && known.is_none() {
                 link = Some(self.link(run, interval)?);
             }
@@ -390,6 +392,17 @@ impl Frame<'_> {
                 let end = self.retract(&end, (&taken.a * state + &taken.b * force).as_slice());
                 return link.map(|link| Passed { link, end, root: update.root });
             }
+        }
+        None
+    }
+
+    /// What an interval reads; where its replay leaves the range of numbers, halfway to another that does not, which it then is.
+    fn shoot_or_nearer(&self, run: usize, interval: &mut Interval, to: Option<&Interval>) -> Option<Base> {
+        for _ in 0..NEARER {
+            if let Some(base) = self.shoot(self.built, run, interval, &interval.start) {
+                return Some(base);
+            }
+            *interval = self.on_the_way(to?, interval, 0.5);
         }
         None
     }
@@ -479,11 +492,16 @@ impl Frame<'_> {
     pub fn between(&self, a: &Track, b: &Track, share: f64) -> Track {
         let mut between = a.clone();
         for (interval, b) in between.intervals.iter_mut().zip(&b.intervals) {
-            let by = DVector::from_vec(b.start.difference(&interval.start, self.freedoms)) * share;
-            interval.start = self.retract(&interval.start, by.as_slice());
-            interval.force = (1.0 - share) * &interval.force + share * &b.force;
+            *interval = self.on_the_way(interval, b, share);
         }
         between
+    }
+
+    /// A share of the way from one begin of an interval to another one.
+    fn on_the_way(&self, a: &Interval, b: &Interval, share: f64) -> Interval {
+        let by = DVector::from_vec(b.start.difference(&a.start, self.freedoms)) * share;
+        let force = (1.0 - share) * &a.force + share * &b.force;
+        Interval { start: self.retract(&a.start, by.as_slice()), force, ..a.clone() }
     }
 
     /// Moves the states of a run, and what pushes it, as a smoother says.
@@ -525,9 +543,10 @@ const ASIDE: f64 = 0.3;
 const UNHEARD: f64 = 0.02;
 /// Two instants closer than this are one, s.
 const SAME: f64 = 1e-9;
-/// Passes over an interval, and over the first, whose state is only guessed.
+/// Passes over an interval, over the first, whose state is only guessed, and times that a move which leaves the range of numbers is halved.
 const PASSES: usize = 2;
 const FIRST: usize = 3;
+const NEARER: usize = 6;
 
 /// What is known of a run before it is followed.
 #[derive(Clone, Copy, Debug)]
