@@ -19,6 +19,13 @@ pub(crate) fn is_clearly_better(one: &Diagnosis, other: &Diagnosis) -> bool {
     merit(one) > merit(other) && !(is_within || overlaps && merit(other) >= SETTLED)
 }
 
+/// Whether any run's windows show a mismatch: where none does, what there is takes whole runs to show, and windows of any length decide nothing.
+pub(crate) fn shows_in_windows(diagnosis: &Diagnosis) -> bool {
+    diagnosis.error.runs.iter().any(|run| run.windowed_before.is_nan() || run.windowed_before > NOISE)
+}
+
+/// Error over the windows of a run, units of noise, up to which they show nothing.
+const NOISE: f64 = 1.05;
 /// Error over windows, units of noise, up to which what is left is of the size of noise.
 const NEAR_NOISE: f64 = 10.0;
 /// Share of a mismatch of which next to nothing is left: a thirtieth of the error.

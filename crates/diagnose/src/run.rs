@@ -7,7 +7,7 @@
 
 use crate::along;
 use crate::attempt::Attempt;
-use crate::better::{SETTLED, is_clearly_better, is_near_noise, merit};
+use crate::better::{SETTLED, is_clearly_better, is_near_noise, merit, shows_in_windows};
 use crate::bias;
 use crate::clock::Clock;
 use crate::curves;
@@ -97,7 +97,7 @@ pub fn diagnose_with(
     }
     // Where runs as a whole leave far more than noise windows are asked as well.
     if let Some(whole) = along_whole_runs(&scenario, (set, &EffectSet::default()), &Work::new(watch, ALONG * effort)) {
-        if is_near_noise(&whole.0) {
+        if is_near_noise(&whole.0) || !shows_in_windows(&whole.0) {
             return Ok(whole);
         }
         watch.step("what whole runs leave is far beyond noise: windows");
@@ -142,7 +142,7 @@ fn diagnose_in_windows(
             return Ok(whole);
         }
     }
-    if merit(&found.0) >= SETTLED || set.window_s.is_some() {
+    if merit(&found.0) >= SETTLED || set.window_s.is_some() || !shows_in_windows(&found.0) {
         return Ok(found);
     }
     let is_told = work.was_ended();

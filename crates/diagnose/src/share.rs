@@ -8,11 +8,12 @@
 //! than noise are resampled, of the others there is nothing to tell: where parts meet once in a run, one window of many holds all. A model *helps*
 //! where that interval, or that of the windows' mean logarithm of E₀/E₁, lies above zero and no run is predicted worse than before: a law
 //! that mends one run and breaks another is none. Few windows may hold nearly all of the mismatch, where a model goes astray within them and
-//! mean squares say by chance how far; the logarithm counts every window alike.
+//! mean squares say by chance how far; the logarithm counts every window alike. What shows in no window but over whole runs, which both models begin
+//! alike, is judged over these.
 
 use crate::diagnosis::Explained;
 use crate::fit::Fit;
-use crate::judge::Judgement;
+use crate::judge::{Judgement, Prediction};
 use crate::lost::NEAR;
 use crate::tape::{Tape, judging};
 use rand_chacha::ChaCha8Rng;
@@ -91,7 +92,13 @@ pub(crate) struct Use {
 pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, window_s: f64) -> (Explained, Use) {
     let judging = judging(tapes);
     let left_out = judging == Role::Holdout;
-    let runs = windows_of(judgement, |run| tapes[run].role == judging);
+    let whole = judgement.rms_of(tapes, false, judging);
+    let [runs, along] =
+        [&judgement.windowed, &judgement.whole].map(|of| windows_of(of, |run| tapes[run].role == judging));
+    let shows = |runs: &BTreeMap<usize, Vec<Window>>| runs.values().flatten().any(|w| w.tells(found.doubt));
+    let is_slow = !shows(&runs) && whole.is_some_and(|[before, _]| before < NEAR) && shows(&along);
+    let lengths = along.keys().map(|run| tapes[*run].span.1 - tapes[*run].span.0);
+    let (window_s, runs) = if is_slow { (lengths.fold(0.0, f64::max), along) } else { (window_s, runs) };
     let all = sum(runs.values().flatten());
     let harmed = runs.iter().filter(|(_, w)| sum(w.iter()).is_harmed(found.doubt));
     let harmed: Vec<String> = harmed.map(|(run, _)| tapes[*run].file.clone()).collect();
@@ -102,7 +109,6 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
     let helps = (interval[0] > 0.0 || is_gain()) && harmed.is_empty();
     let leaves_little = all.after <= LEFT * LEFT * all.count || all.share() > 1.0 - NEXT_TO_NOTHING;
     // Where whole runs were followed before, they have to be followed as well.
-    let whole = judgement.rms_of(tapes, false, judging);
     let leads_astray = whole.is_some_and(|[before, after]| before < NEAR && after > LEFT && after > HARM * before);
     let is_still = |[_, after]: [f64; 2]| after <= QUIET;
     let in_windows = [Role::Fit, judging].map(|role| judgement.rms_of(tapes, true, role));
@@ -115,8 +121,7 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
 }
 
 /// Windows by run.
-fn windows_of(judgement: &Judgement, wanted: impl Fn(usize) -> bool) -> BTreeMap<usize, Vec<Window>> {
-    let [before, after] = &judgement.windowed;
+fn windows_of([before, after]: &[Prediction; 2], wanted: impl Fn(usize) -> bool) -> BTreeMap<usize, Vec<Window>> {
     let mut runs: BTreeMap<usize, Vec<Window>> = BTreeMap::new();
     let pairs = before.fit.segments.iter().zip(&before.residuals).filter(|(s, _)| wanted(s.run));
     for (segment, r) in pairs {

@@ -347,7 +347,7 @@ impl<'a> Problem<'a> {
 
     /// A set fitted, from where another one stands; where something holds the runs are followed anew as long as that betters it.
     pub fn fit(&self, from: &Fitted, set: EffectSet, reach: Reach) -> Result<Fitted, DiagnoseError> {
-        let once = self.fit_once(from, set, reach)?;
+        let once = self.with_forces_of(from, self.fit_once(from, set, reach)?, reach)?;
         self.fitted_again(once, reach)
     }
 

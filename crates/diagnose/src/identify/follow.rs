@@ -97,6 +97,20 @@ impl Problem<'_> {
         again.filter(|again| again.score < settled.score).unwrap_or(settled)
     }
 
+    /// A fit that came out worse than what it goes on from and has more numbers than, where forces fell idle while its states were astray: again, with
+    /// those as large as they were known to be.
+    pub(super) fn with_forces_of(&self, from: &Fitted, fitted: Fitted, reach: Reach) -> Result<Fitted, DiagnoseError> {
+        let known = &from.spread.force;
+        let revived = fitted.spread.force.zip_map(known, |now, known| if now < NONE * known { known } else { now });
+        if fitted.score <= from.score || revived == fitted.spread.force {
+            return Ok(fitted);
+        }
+        let mut begun = fitted.clone();
+        begun.spread.force = revived;
+        let again = self.fit_once(&begun, begun.set.clone(), Reach { reuse: true, ..reach });
+        Ok(again.ok().filter(|again| again.score < fitted.score).unwrap_or(fitted))
+    }
+
     /// Runs of a model that holds followed anew, as long as that betters them: states that were led astray through a touch are found again by what comes before
     /// them, not by steps along derivatives that were taken astray.
     pub(super) fn followed_again(&self, mut now: Fitted) -> Result<Fitted, DiagnoseError> {
