@@ -19,6 +19,7 @@ use crate::select::search::{Found, NEXT_TO_NOTHING, Remainder, hypotheses_of, re
 use crate::tell::near_the_best;
 use record::Role;
 use scenario::spec::Tolerance;
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 /// What a search along whole runs has found.
@@ -311,5 +312,24 @@ pub(crate) fn attempts(course: &Course) -> Vec<Attempt> {
             });
         }
     }
+    keep_what_is_left_of_sets(&mut attempts, course);
     attempts
+}
+
+/// What was fitted beside others that were of no use is kept, and what these brought was its own.
+fn keep_what_is_left_of_sets(attempts: &mut [Attempt], course: &Course) {
+    let best = course.found.best.set.titles();
+    for title in &best {
+        if attempts.iter().any(|a| a.kept && a.title() == *title) {
+            continue;
+        }
+        let own = attempts.iter_mut().filter(|a| a.title() == *title && a.gain.is_some());
+        let Some(own) = own.max_by(|a, b| a.gain.partial_cmp(&b.gain).unwrap_or(Ordering::Equal)) else { continue };
+        own.kept = true;
+        let (round, gain) = (own.round, own.gain);
+        let sets = course.found.tried.iter().filter(|t| t.round == round && t.added.contains(title));
+        let beside: Vec<&String> = sets.flat_map(|t| &t.added).filter(|t| !best.contains(t)).collect();
+        let idle = attempts.iter_mut().filter(|a| a.round == round && a.gain == gain && beside.contains(&&a.title()));
+        idle.for_each(|a| (a.gain, a.fall) = (None, None));
+    }
 }

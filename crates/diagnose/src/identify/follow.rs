@@ -97,6 +97,12 @@ impl Problem<'_> {
         again.filter(|again| again.score < settled.score).unwrap_or(settled)
     }
 
+    /// A fit whose runs nothing unknown pushes, its numbers as they are.
+    pub fn without_forces(&self, mut of: Fitted) -> Result<Fitted, DiagnoseError> {
+        of.spread.force.fill(0.0);
+        self.settle(of, SETTLING, true)
+    }
+
     /// A fit that came out worse than what it goes on from and has more numbers than, where forces fell idle while its states were astray: again, with
     /// those as large as they were known to be.
     pub(super) fn with_forces_of(&self, from: &Fitted, fitted: Fitted, reach: Reach) -> Result<Fitted, DiagnoseError> {

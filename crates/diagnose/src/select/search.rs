@@ -107,6 +107,7 @@ pub fn search(
     hypotheses: &Hypotheses<'_>,
     numbers: Option<EffectSet>,
 ) -> Result<Found, DiagnoseError> {
+    let nominal = at_rest(problem, nominal)?;
     let first = hypotheses(&nominal)?;
     // What a nominal model leaves that is far from what the runs did is no measure of what is left beside another one.
     let (many, all) = (first.len(), problem.power(begun.as_ref().unwrap_or(&nominal)));
@@ -360,6 +361,16 @@ impl Remainder {
 /// that sum's 99 % point as of a gamma distribution (Wilson–Hilferty).
 pub fn remainder(problem: &Problem<'_>, fit: &Fitted) -> Result<Remainder, DiagnoseError> {
     Ok(left_of(problem, fit, &bare(problem, fit)?))
+}
+
+/// A fit without the forces that are unknown there, where that is likelier: states that are led apart by a motion that is not stable take forces for it, and steps
+/// along their spread end before there is none.
+fn at_rest(problem: &Problem<'_>, fit: Fitted) -> Result<Fitted, DiagnoseError> {
+    if remainder(problem, &fit)?.rise >= 0.0 {
+        return Ok(fit);
+    }
+    let silent = problem.without_forces(fit.clone());
+    Ok(silent.ok().filter(|silent| silent.score < fit.score).unwrap_or(fit))
 }
 
 /// The runs of a fit made linear where it stands, without numbers.
