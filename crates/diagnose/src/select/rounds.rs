@@ -131,8 +131,15 @@ fn fit_first(
     let better = |best: (_, Fitted), free: (_, Fitted)| {
         if criterion(&free.1, many) < criterion(&best.1, many) { free } else { best }
     };
-    Ok(free.fold(first, better))
+    let best = free.fold(first, better);
+    // What makes it worse than what changes nothing was promised too far away for what is linear: from near that, downhill.
+    let is_astray = |fit: &(_, Fitted)| gain(fit) < 0.0;
+    let near = || NEAR.into_iter().filter_map(|share| look(set.a_share_of_the_way(&now.set, share)).ok());
+    Ok(if is_astray(&best) { near().find(|fit| !is_astray(fit)).unwrap_or(best) } else { best })
 }
+
+/// Shares of the way to what is promised from which a fit is tried again that has led astray.
+const NEAR: [f64; 2] = [0.25, 0.01];
 
 /// What is fitted next: the first of the proposals that was not yet, and of laws alone where nothing was enough.
 fn next(
