@@ -290,7 +290,8 @@ pub(crate) fn attempts(course: &Course) -> Vec<Attempt> {
             let is_whole = tried.added.iter().all(|t| best.findings().any(|(b, _)| b.title() == *t));
             let at = attempts.iter().position(|a| a.round == tried.round && a.title() == h.title());
             let known = at.map(|i| attempts.remove(i));
-            let is_better = |k: &Attempt| k.kept || !(is_kept && is_whole) && k.gain.is_some_and(|g| g >= gain);
+            let is_of_use = |k: &Attempt| k.kept || !(is_kept && is_whole);
+            let is_better = |k: &Attempt| is_of_use(k) && k.gain.is_some_and(|g| g >= gain || k.kept && g > 0.0);
             if known.as_ref().is_some_and(is_better) {
                 attempts.extend(known);
                 continue;

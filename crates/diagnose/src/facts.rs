@@ -51,7 +51,7 @@ impl Facts {
         });
         Self {
             joints: joints(built, tapes),
-            bodies: bodies(built),
+            bodies: bodies(built, &sensors),
             contacts: contacts(built),
             mechanisms: built.model.mechanisms.iter().map(mechanism).collect(),
             thrusters: thrusters(built, tapes),
@@ -145,10 +145,18 @@ fn travel(tapes: &[Tape], coordinate: usize) -> f64 {
     (high - low).max(0.0)
 }
 
-fn bodies(built: &Built) -> Vec<BodyFact> {
+fn bodies(built: &Built, sensors: &[SensorFact]) -> Vec<BodyFact> {
     let touched = |body: usize| {
         let pairs = 0..built.model.scene.pairs().len();
         pairs.into_iter().any(|p| built.model.pair_bodies(p).0 == body || built.model.pair_bodies(p).1 == body)
+    };
+    let placed = |vehicle: usize| {
+        let reads = |quantity: &Quantity| match quantity {
+            Quantity::Position(of, _) | Quantity::LinearVelocity(of, _) => *of == vehicle,
+            Quantity::SeenPosition(_) => true,
+            _ => false,
+        };
+        sensors.iter().any(|s| reads(&s.quantity))
     };
     let held = |vehicle: usize| {
         let sides = built.model.mechanisms.iter().flat_map(|m| [m.side_a.vehicle, m.side_b.vehicle]);
@@ -177,6 +185,7 @@ fn bodies(built: &Built) -> Vec<BodyFact> {
                 is_base,
                 is_on_joints: link.body != 0,
                 is_torque_free: !pushed && !touched(vehicle.body0) && !held(number) && vehicle.tree.nv == 0,
+                is_placed: placed(number),
             });
         }
     }

@@ -229,15 +229,23 @@ impl Noise {
         tapes.iter().map(of).collect()
     }
 
-    /// What was found, in words.
+    /// What was found, in words: of what is louder, and of what is quieter.
     pub fn words(&self) -> Vec<String> {
-        let one = |(channel, factor): (&String, &f64)| {
-            format!(
-                "{channel}: its noise is {factor:.2} times what was stated or its raw samples show; that figure was used."
-            )
-        };
-        self.factors.iter().map(one).collect()
+        let (louder, quieter): (Vec<_>, Vec<_>) = self.factors.iter().partition(|(_, factor)| **factor > 1.0);
+        [louder, quieter].iter().filter_map(|own| said_of(own)).collect()
     }
+}
+
+/// Channels whose noise is not the stated one, in words.
+fn said_of(own: &[(&String, &f64)]) -> Option<String> {
+    const STATED: &str = "times what was stated or its raw samples show";
+    let factors = own.iter().map(|(_, factor)| **factor);
+    let [least, most] = [factors.clone().reduce(f64::min)?, factors.reduce(f64::max)?];
+    let names: Vec<&str> = own.iter().map(|(channel, _)| channel.as_str()).collect();
+    Some(match names.as_slice() {
+        [one] => format!("{one}: its noise is {least:.2} {STATED}; that figure was used."),
+        _ => format!("{}: their noise is {least:.2} to {most:.2} {STATED}; those figures were used.", names.join(", ")),
+    })
 }
 
 /// Root mean square that half of the samples are in windows of no more than: coloured noise is in all windows, what a model misses may be in some.

@@ -106,10 +106,10 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
     let runs = &telling(&runs, found.doubt);
     let interval = interval(runs, share_of);
     let is_gain = || all.share() > 0.0 && self::interval(runs, mean_log_gain)[0] > 0.0;
-    let helps = (interval[0] > 0.0 || is_gain()) && harmed.is_empty();
     let leaves_little = all.after <= LEFT * LEFT * all.count || all.share() > 1.0 - NEXT_TO_NOTHING;
     // Where whole runs were followed before, they have to be followed as well.
     let leads_astray = whole.is_some_and(|[before, after]| before < NEAR && after > LEFT && after > HARM * before);
+    let helps = (interval[0] > 0.0 || is_gain()) && harmed.is_empty() && !leads_astray;
     let is_still = |[_, after]: [f64; 2]| after <= QUIET;
     let in_windows = [Role::Fit, judging].map(|role| judgement.rms_of(tapes, true, role));
     let is_quiet = left_out && whole.is_some_and(is_still) && in_windows.into_iter().flatten().all(is_still);

@@ -270,8 +270,12 @@ fn located(findings: &Findings, stage: &Stage<'_>, features: &Features) -> Vec<L
             let most =
                 |places: &dyn Fn(&str) -> bool| kept().filter(|a| places(&a.place)).map(|a| a.share).reduce(f64::max);
             let mut shares: Vec<(String, f64)> = Vec::new();
+            // A nominal model that is far from what the runs did is no measure of what was taken from it: what was explained by the one place sits there.
+            let alone = (findings.explained.share > 0.0).then_some(findings.explained.share);
+            let alone = alone.filter(|_| members.iter().all(|(h, _)| h.place == members[0].0.place));
             for (h, _) in &members {
                 let own = most(&|place| place == h.place).or_else(|| most(&|place| !is_member(place)));
+                let own = own.filter(|share| *share > NONE).or(alone);
                 if !shares.iter().any(|s| s.0 == h.place) {
                     shares.push((h.place.clone(), own.unwrap_or(1.0)));
                 }
@@ -281,6 +285,8 @@ fn located(findings: &Findings, stage: &Stage<'_>, features: &Features) -> Vec<L
     }
 }
 
+/// Share of the mismatch that is as good as none.
+const NONE: f64 = 0.005;
 /// Difference of shares that does not tell places apart.
 const TIE: f64 = 0.03;
 /// Places of what has no name that are told.

@@ -34,6 +34,7 @@ fn bodies() -> [BodyFact; 2] {
         is_base: true,
         is_on_joints: false,
         is_torque_free: false,
+        is_placed: true,
     };
     let link = BodyFact { name: "link".into(), mask: [false; 6], is_base: false, is_on_joints: true, ..base.clone() };
     [base, link]

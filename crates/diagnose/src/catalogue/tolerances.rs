@@ -68,6 +68,7 @@ mod tests {
                 is_base: false,
                 is_on_joints: true,
                 is_torque_free: false,
+                is_placed: true,
             }],
             contacts: vec![ContactFact {
                 name: "pad/plate".into(),

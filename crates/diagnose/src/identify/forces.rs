@@ -140,6 +140,7 @@ mod tests {
             is_base: true,
             is_on_joints: false,
             is_torque_free: false,
+            is_placed: true,
         };
         let all = forces(&Facts { joints: vec![joint], bodies: vec![body], ..Facts::default() });
         assert_eq!(all.iter().map(|f| f.label.as_str()).collect::<Vec<_>>(), ["", "torque z", "force x", "force y"]);

@@ -118,22 +118,41 @@ fn add_remarks(text: &mut String, inspection: &Inspection) {
     }
 }
 
-/// Remarks without those that only differ by run and figures from one before them, each with how many these are, in words.
+/// Remarks, those that differ by figures, run or channel alone once, and what is like them in words.
 pub fn said_once(remarks: &[crate::Remark]) -> Vec<(&crate::Remark, String)> {
-    let mut said: Vec<(&crate::Remark, usize)> = Vec::new();
+    let mut said: Vec<(&crate::Remark, usize, Vec<&str>)> = Vec::new();
     for remark in remarks {
         let is_like = |other: &crate::Remark| {
-            (other.severity, &other.channel) == (remark.severity, &remark.channel)
+            (other.severity, other.channel.is_some()) == (remark.severity, remark.channel.is_some())
                 && pattern(&other.what) == pattern(&remark.what)
         };
-        match said.iter_mut().find(|(first, _)| is_like(first)) {
-            Some((_, more)) => *more += 1,
-            None => said.push((remark, 0)),
+        match said.iter_mut().find(|(first, ..)| is_like(first)) {
+            Some((first, more, others)) => {
+                *more += 1;
+                let other = remark.channel.as_deref().filter(|_| remark.channel != first.channel);
+                others.extend(other.filter(|c| !others.contains(c)));
+            }
+            None => said.push((remark, 0, Vec::new())),
         }
     }
-    let words = |more: usize| if more > 0 { format!(" (and {more} like it in other runs)") } else { String::new() };
-    said.into_iter().map(|(remark, more)| (remark, words(more))).collect()
+    let of = |(remark, more, others): (_, usize, Vec<&str>)| (remark, like_it(more, &others));
+    said.into_iter().map(of).collect()
 }
+
+/// How many remarks are like one, and of which other channels.
+fn like_it(more: usize, others: &[&str]) -> String {
+    let (named, rest) = others.split_at(others.len().min(NAMED));
+    match (more, named, rest.len()) {
+        (0, ..) => String::new(),
+        (_, [], _) => format!(" (and {more} like it in other runs)"),
+        (_, [one], 0) => format!(" (and {more} like it, {one} too)"),
+        (_, [names @ .., last], 0) => format!(" (and {more} like it, {} and {last} too)", names.join(", ")),
+        (.., rest) => format!(" (and {more} like it, {} and {rest} more channels too)", named.join(", ")),
+    }
+}
+
+/// Other channels of a remark that are named.
+const NAMED: usize = 4;
 
 /// A sentence without its figures.
 fn pattern(what: &str) -> String {

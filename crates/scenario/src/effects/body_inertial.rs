@@ -129,7 +129,8 @@ fn mass(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
 }
 
 fn com(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
-    if !weighs(body) {
+    // The origin of what turns freely circles its centre of mass, which is seen where its place is.
+    if !weighs(body) && !(body.is_placed && body.turns().contains(&true)) {
         return Vec::new();
     }
     // In the plane only what lies in it shows.
@@ -145,9 +146,9 @@ const INERTIA: [&str; 6] = ["inertia[0]", "inertia[1]", "inertia[2]", "inertia[3
 fn inertia(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
     let i = &body.inertia;
     let entries = [i[(0, 0)], i[(1, 1)], i[(2, 2)], i[(0, 1)], i[(0, 2)], i[(1, 2)]];
-    // A body that nothing pushes shows only ratios: Ixx stays. One that cannot turn shows nothing, one in the plane Izz.
+    // A body that nothing pushes shows only ratios: Ixx stays, and in the plane nothing. One that cannot turn shows nothing, one in the plane Izz.
     let is_shown = |k: &usize| match is_planar(body) {
-        true => body.mask[2] && *k == 2,
+        true => body.mask[2] && *k == 2 && !body.is_torque_free,
         false => *k > 0 || !body.is_torque_free,
     };
     let columns = Along::each((0..6).filter(is_shown), 1e-4 * body.mean_moment().max(1e-9));

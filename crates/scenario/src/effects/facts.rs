@@ -50,6 +50,8 @@ pub struct BodyFact {
     pub is_on_joints: bool,
     /// Whether nothing but its own inertia moves it: no thruster, no contact, no mechanism.
     pub is_torque_free: bool,
+    /// Whether a sensor reads where its vehicle is, or how fast that moves on.
+    pub is_placed: bool,
 }
 
 /// A contact pair.
