@@ -3,6 +3,7 @@
 //! How long an unknown force stays what it is was chosen by what the nominal model misses. What a nearly right law leaves comes and goes elsewhere, in
 //! short bursts, and intervals that are not followed cost more than all that it explains brings.
 
+use super::dull::dull_beside;
 use super::kin::are_kin;
 use super::search::{FAR, LOOK, criterion, to_the_end};
 use crate::effect_set::EffectSet;
@@ -73,7 +74,10 @@ fn with_others(
     begins: impl Fn(&Member) -> Vec<Member>,
     are_far: bool,
 ) -> Fitted {
-    let all: Vec<String> = now.set.findings().map(|(h, _)| h.title()).collect();
+    // A law at a joint where nothing is missing is right as it is.
+    let dull = dull_beside(&now, problem).unwrap_or_default();
+    let speaks = |h: &Hypothesis| !dull.contains(&h.place);
+    let all: Vec<String> = now.set.findings().filter(|(h, _)| speaks(h)).map(|(h, _)| h.title()).collect();
     for title in all {
         let Some(at) = now.set.members.iter().position(|(h, _)| h.title() == title) else { continue };
         let look = |(other, start): Member| {

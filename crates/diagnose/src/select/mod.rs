@@ -6,6 +6,7 @@
 //!   −2 log L(θ̂, q̂, κ̂) + d ln N − 2 log prior        (BIC: Schwarz 1978)
 
 mod detail;
+mod dull;
 mod enough;
 mod exchange;
 mod kin;

@@ -1,6 +1,7 @@
 //! The search: linear sets, the best of them fitted in full simulation, until nothing is worth its price.
 
 use super::detail::{enriched, relaxed, simpler};
+use super::dull::open;
 use super::exchange::{exchanged, united};
 use super::gamma_quantile_over_mean;
 use super::kin::alone_of_their_kind;
@@ -15,10 +16,8 @@ use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
 use crate::facts::Facts;
 use crate::fit::{first_sizes, vary};
-use crate::held::holds;
 use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach, ridge_of};
-use crate::identify::forces::Force;
 use crate::identify::marginal::{Chain, Spread, estimate, score};
 use crate::screen::Score;
 use crate::standing::told;
@@ -89,10 +88,6 @@ const WORTH: f64 = 3.0;
 const SEVERAL: usize = 3;
 /// Criterion by which a set is far from what it was.
 pub(super) const FAR: f64 = 1000.0;
-/// Rise of the likelihood without a joint's unknown force, as a share of the largest, below which nothing is missing there; and the largest one from which on
-/// forces say anything (half a χ² exceeds it once in a thousand times): what is faster than intervals may have been taken for noise.
-const DULL: f64 = 0.003;
-const SPEAKING: f64 = 9.5;
 
 /// Criterion of a fit.
 pub fn criterion(fit: &Fitted, many: usize) -> f64 {
@@ -374,7 +369,7 @@ fn at_rest(problem: &Problem<'_>, fit: Fitted) -> Result<Fitted, DiagnoseError> 
 }
 
 /// The runs of a fit made linear where it stands, without numbers.
-fn bare(problem: &Problem<'_>, fit: &Fitted) -> Result<Vec<Chain>, DiagnoseError> {
+pub(super) fn bare(problem: &Problem<'_>, fit: &Fitted) -> Result<Vec<Chain>, DiagnoseError> {
     Ok(problem.linearise(&mut fit.clone(), &[], true)?.chains(&[]))
 }
 
@@ -394,35 +389,6 @@ const ONE_IN_HUNDRED: f64 = 2.326;
 /// What the information matrix says of every hypothesis, the most promising first.
 fn shown(pool: &Pool, grown: &Grown) -> Vec<(Hypothesis, Score)> {
     grown.scores.iter().map(|s| (pool.hypotheses[s.hypothesis].clone(), s.clone())).collect()
-}
-
-/// Hypotheses that are not in a set yet, at joints where a force is missing.
-fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>, bare: &[Chain]) -> Vec<Hypothesis> {
-    let at = |spread: &Spread| score(bare, spread);
-    let here = at(&now.spread);
-    let without = |j: usize| {
-        let mut spread = now.spread.clone();
-        spread.force[j] = 0.0;
-        at(&spread) - here
-    };
-    let rises: Vec<f64> = (0..problem.forces.len()).map(without).collect();
-    let largest = rises.iter().copied().fold(0.0, f64::max);
-    let is_dull = |place: &str| {
-        let own = problem.forces.iter().zip(&rises).filter(|(f, _)| f.place == place);
-        let rise = own.map(|(_, rise)| *rise).reduce(f64::max);
-        // What holds passes a joint's force on to where it is held, numbers that may be off by a tolerance take it on as far as they can, and where a
-        // joint is not read (a wheel) its force and its base's are one.
-        let is_unique = !holds(&now.built) && problem.plant.scenario.tolerance.is_exact() && all_read(problem);
-        let says = largest > SPEAKING && is_unique;
-        says && place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
-    };
-    all.into_iter().filter(|h| !is_dull(&h.place)).filter_map(|h| now.set.still_open(h)).collect()
-}
-
-/// Whether some sensor reads every joint that a force may be missing at.
-fn all_read(problem: &Problem<'_>) -> bool {
-    let readings = || problem.stage.tapes.iter().flat_map(|t| &t.readings);
-    problem.forces.iter().filter_map(Force::joint).all(|j| readings().any(|r| r.quantity.motion_of() == Some(j)))
 }
 
 /// What the first looks at all hypotheses beside a fit say.
