@@ -10,7 +10,7 @@
 //! On an ellipse 1/√q takes the place of s_max/|s⁺|; what a turn changes of the length there, and the dependence on fₙ, are
 //! left out: they are not symmetric, and a solver that re-solves sees them in the next pass.
 
-use crate::ellipse::Ellipse;
+use crate::ellipse::{Ellipse, Held};
 use crate::levels::Levels;
 use crate::trial::{Brush, BrushRate, FrictionError, Slope, Trial, check_not_negative, check_positive, is_zero};
 use nalgebra::Vector3;
@@ -125,15 +125,17 @@ impl Bristle {
                 held = bound.hold(&trial.s_trial);
             }
         }
-        // The damper sees what was left within the bound of now: the length that a falling bound takes away slips at the
-        // tip. Counted as a rate of the bristle, it would push along the slip and give energy.
-        let before = if is_zero(&trial.s) { trial.s } else { bound.hold(&trial.s).s };
+        // The damper sees the motion within the bound of now, as [`Self::eval_rate`] does: the length that a falling bound takes away slips at the tip.
+        // Counted as a rate of the bristle, it would push along the slip and give energy.
+        let (before, within) = self.within(&bound, trial, &held);
         let rate = self.damping / trial.elapsed;
-        let mut force = -(self.stiffness * held.s + rate * (held.s - before));
-        let mut slope = Slope { across: (self.stiffness + rate) * held.shrink, along: 0.0, direction: held.normal };
-        if held.inside {
-            slope.along = slope.across;
-        }
+        let mut force = -(self.stiffness * held.s + rate * (within.s - before));
+        let along = |inside: bool, slope: f64| if inside { slope } else { 0.0 };
+        let mut slope = Slope {
+            across: self.stiffness * held.shrink + rate * within.shrink,
+            along: along(held.inside, self.stiffness) + along(within.inside, rate),
+            direction: held.normal,
+        };
         if self.damping > 0.0 {
             let allowed = bound.scaled(self.stiffness).hold(&force);
             if !allowed.inside {
@@ -155,6 +157,19 @@ impl Bristle {
             by_deflection: slope,
             by_slip,
         }
+    }
+
+    /// Where a bristle is within a bound before a step, and after it: as it is `held`, but where the bound has fallen below what it was.
+    #[inline]
+    fn within(&self, bound: &Ellipse, trial: &Trial, held: &Held) -> (Vector3<f64>, Held) {
+        if is_zero(&trial.s) {
+            return (trial.s, *held);
+        }
+        let before = bound.hold(&trial.s);
+        if before.inside {
+            return (before.s, *held);
+        }
+        (before.s, bound.hold(&(before.s + (trial.s_trial - trial.s))))
     }
 
     /// The force, or that of the spring alone where the damper would give energy: shortened along itself, a deflection may
@@ -248,6 +263,19 @@ mod tests {
         let brush = LAW.eval(&Trial { normal_force: 5.0, ..trial(s, Vector3::zeros()) });
         assert!(LAW.calc_stored_energy(&brush.s) < LAW.calc_stored_energy(&s));
         assert!(brush.force.norm() <= 0.5 * 5.0 + 1e-12);
+    }
+
+    #[test]
+    fn on_a_falling_bound_the_step_law_is_that_of_continuous_time() {
+        let law = Bristle { mu_kinetic: 0.5, stribeck_speed: 0.0, ..LAW };
+        let (before, now, elapsed) = (20.0, 20.0 - 2e-5, 1e-9);
+        let s = Vector3::new(law.calc_reach(before, 1.0), 0.0, 0.0);
+        // Outward, along the bound, and inward slower than the bound falls.
+        for slip in [Vector3::new(0.3, 0.1, 0.0), Vector3::new(0.0, 0.3, 0.0), Vector3::new(-0.2, 0.0, 0.0)] {
+            let trial = Trial { s, s_trial: s + slip * elapsed, slip, elapsed, normal_force: now, ..Trial::default() };
+            let (step, rate) = (law.eval(&trial).force, law.eval_rate(&trial).force);
+            assert!((step - rate).norm() < 1e-5 * rate.norm(), "{slip}: {step} {rate}");
+        }
     }
 
     #[test]
