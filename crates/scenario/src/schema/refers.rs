@@ -78,7 +78,9 @@ fn part(names: &Names<'_>, text: &str, path: &str) -> Option<Problem> {
         _ => {
             let found = format!("\"{}\"", shortened(text));
             let example = names.vehicles.first().copied().unwrap_or("vehicle");
-            let demand = format!("must be written as vehicle/name, e.g. \"{example}/…\"");
+            let demand = format!(
+                "must be written as vehicle/name, e.g. \"{example}/…\", or \"world/…\" for what stands in the world"
+            );
             Some(Problem::OutOfRange { key: path.to_owned(), found, demand })
         }
     }
