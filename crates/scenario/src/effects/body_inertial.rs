@@ -130,7 +130,8 @@ fn mass(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
 
 fn com(body: &BodyFact, _: &Survey<'_>) -> Vec<Candidate> {
     // The origin of what turns freely circles its centre of mass, which is seen where its place is.
-    if !weighs(body) && !(body.is_placed && body.turns().contains(&true)) {
+    let circles = body.is_placed && body.turns().contains(&true);
+    if !weighs(body) && !circles {
         return Vec::new();
     }
     // In the plane only what lies in it shows.
