@@ -101,5 +101,5 @@ fn what_was_left_out_and_what_noise_was_taken_is_said() {
         "{}",
         said("one rate stands still")
     );
-    assert!(said("σ stated 0.7 times").contains("its noise is 1.4"), "{}", said("σ stated 0.7 times"));
+    assert!(said("σ stated 0.7 times").contains("their noise is 1.4"), "{}", said("σ stated 0.7 times"));
 }
