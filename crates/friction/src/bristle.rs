@@ -127,7 +127,7 @@ impl Bristle {
         }
         // The damper sees the motion within the bound of now, as [`Self::eval_rate`] does: the length that a falling bound takes away slips at the tip.
         // Counted as a rate of the bristle, it would push along the slip and give energy.
-        let (before, within) = self.within(&bound, trial, &held);
+        let (before, within) = within(&bound, trial, &held);
         let rate = self.damping / trial.elapsed;
         let mut force = -(self.stiffness * held.s + rate * (within.s - before));
         let along = |inside: bool, slope: f64| if inside { slope } else { 0.0 };
@@ -157,19 +157,6 @@ impl Bristle {
             by_deflection: slope,
             by_slip,
         }
-    }
-
-    /// Where a bristle is within a bound before a step, and after it: as it is `held`, but where the bound has fallen below what it was.
-    #[inline]
-    fn within(&self, bound: &Ellipse, trial: &Trial, held: &Held) -> (Vector3<f64>, Held) {
-        if is_zero(&trial.s) {
-            return (trial.s, *held);
-        }
-        let before = bound.hold(&trial.s);
-        if before.inside {
-            return (before.s, *held);
-        }
-        (before.s, bound.hold(&(before.s + (trial.s_trial - trial.s))))
     }
 
     /// The force, or that of the spring alone where the damper would give energy: shortened along itself, a deflection may
@@ -214,6 +201,19 @@ impl Bristle {
         }
         BrushRate { force: force - self.viscous * trial.slip, s, s_rate, sticks: !slides }
     }
+}
+
+/// Where a bristle is within a bound before a step, and after it: as it is `held`, but where the bound has fallen below what it was.
+#[inline]
+fn within(bound: &Ellipse, trial: &Trial, held: &Held) -> (Vector3<f64>, Held) {
+    if is_zero(&trial.s) {
+        return (trial.s, *held);
+    }
+    let before = bound.hold(&trial.s);
+    if before.inside {
+        return (before.s, *held);
+    }
+    (before.s, bound.hold(&(before.s + (trial.s_trial - trial.s))))
 }
 
 /// How near the bound counts as on it: with a strict comparison round-off would choose the branch.

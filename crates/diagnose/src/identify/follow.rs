@@ -87,12 +87,7 @@ impl Problem<'_> {
 
     /// A fit with forces that seemed idle while its states were astray tried again at what they were begun with, where that is better.
     pub(super) fn with_forces_again(&self, settled: Fitted, begun: &DVector<f64>) -> Fitted {
-        let revived = settled.spread.force.zip_map(begun, |now, begun| if now < NONE * begun { begun } else { now });
-        if revived == settled.spread.force {
-            return settled;
-        }
-        let mut again = settled.clone();
-        again.spread.force = revived;
+        let Some(again) = revived(&settled, begun) else { return settled };
         let again = self.settle(again, SETTLING, true).ok();
         again.filter(|again| again.score < settled.score).unwrap_or(settled)
     }
@@ -106,13 +101,10 @@ impl Problem<'_> {
     /// A fit that came out worse than what it goes on from and has more numbers than, where forces fell idle while its states were astray: again, with
     /// those as large as they were known to be.
     pub(super) fn with_forces_of(&self, from: &Fitted, fitted: Fitted, reach: Reach) -> Result<Fitted, DiagnoseError> {
-        let known = &from.spread.force;
-        let revived = fitted.spread.force.zip_map(known, |now, known| if now < NONE * known { known } else { now });
-        if fitted.score <= from.score || revived == fitted.spread.force {
+        if fitted.score <= from.score {
             return Ok(fitted);
         }
-        let mut begun = fitted.clone();
-        begun.spread.force = revived;
+        let Some(begun) = revived(&fitted, &from.spread.force) else { return Ok(fitted) };
         let again = self.fit_once(&begun, begun.set.clone(), Reach { reuse: true, ..reach });
         Ok(again.ok().filter(|again| again.score < fitted.score).unwrap_or(fitted))
     }
@@ -139,4 +131,12 @@ impl Problem<'_> {
         }
         Ok(now)
     }
+}
+
+/// A fit with the forces that fell idle as large as they were known to be; none where none did.
+fn revived(fitted: &Fitted, known: &DVector<f64>) -> Option<Fitted> {
+    let force = fitted.spread.force.zip_map(known, |now, known| if now < NONE * known { known } else { now });
+    let mut revived = (force != fitted.spread.force).then(|| fitted.clone())?;
+    revived.spread.force = force;
+    Some(revived)
 }

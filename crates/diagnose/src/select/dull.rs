@@ -23,14 +23,14 @@ pub(super) fn open(all: Vec<Hypothesis>, now: &Fitted, problem: &Problem<'_>, ba
 
 /// Places of joints at which nothing is missing beside a fit, where more is somewhere else.
 pub(super) fn dull_beside(now: &Fitted, problem: &Problem<'_>) -> Result<BTreeSet<String>, DiagnoseError> {
+    if !tells_joints_apart(now, problem) {
+        return Ok(BTreeSet::new());
+    }
     Ok(dull(now, problem, &bare(problem, now)?))
 }
 
 fn dull(now: &Fitted, problem: &Problem<'_>, bare: &[Chain]) -> BTreeSet<String> {
-    // What holds passes a joint's force on to where it is held, numbers that may be off by a tolerance take it on as far as they can, and where a
-    // joint is not read (a wheel) its force and its base's are one.
-    let is_unique = !holds(&now.built) && problem.plant.scenario.tolerance.is_exact() && all_read(problem);
-    if !is_unique {
+    if !tells_joints_apart(now, problem) {
         return BTreeSet::new();
     }
     let at = |spread: &Spread| score(bare, spread);
@@ -48,6 +48,12 @@ fn dull(now: &Fitted, problem: &Problem<'_>, bare: &[Chain]) -> BTreeSet<String>
         largest > SPEAKING && place.starts_with("joint:") && rise.is_some_and(|r| r < DULL * largest)
     };
     problem.forces.iter().map(|f| f.place.clone()).filter(is_dull).collect()
+}
+
+/// Whether a joint's force is its own: what holds passes it on to where it is held, numbers that may be off by a tolerance take it on as far as they can, and
+/// where a joint is not read (a wheel) its force and its base's are one.
+fn tells_joints_apart(now: &Fitted, problem: &Problem<'_>) -> bool {
+    !holds(&now.built) && problem.plant.scenario.tolerance.is_exact() && all_read(problem)
 }
 
 /// Whether some sensor reads every joint that a force may be missing at.

@@ -120,23 +120,27 @@ fn add_remarks(text: &mut String, inspection: &Inspection) {
 
 /// Remarks, those that differ by figures, run or channel alone once, and what is like them in words.
 pub fn said_once(remarks: &[crate::Remark]) -> Vec<(&crate::Remark, String)> {
-    let mut said: Vec<(&crate::Remark, usize, Vec<&str>)> = Vec::new();
+    struct Kind<'r> {
+        first: &'r crate::Remark,
+        more: usize,
+        others: Vec<&'r str>,
+    }
+    let mut said: Vec<Kind<'_>> = Vec::new();
     for remark in remarks {
         let is_like = |other: &crate::Remark| {
             (other.severity, other.channel.is_some()) == (remark.severity, remark.channel.is_some())
                 && pattern(&other.what) == pattern(&remark.what)
         };
-        match said.iter_mut().find(|(first, ..)| is_like(first)) {
-            Some((first, more, others)) => {
-                *more += 1;
-                let other = remark.channel.as_deref().filter(|_| remark.channel != first.channel);
-                others.extend(other.filter(|c| !others.contains(c)));
+        match said.iter_mut().find(|kind| is_like(kind.first)) {
+            Some(kind) => {
+                kind.more += 1;
+                let other = remark.channel.as_deref().filter(|_| remark.channel != kind.first.channel);
+                kind.others.extend(other.filter(|c| !kind.others.contains(c)));
             }
-            None => said.push((remark, 0, Vec::new())),
+            None => said.push(Kind { first: remark, more: 0, others: Vec::new() }),
         }
     }
-    let of = |(remark, more, others): (_, usize, Vec<&str>)| (remark, like_it(more, &others));
-    said.into_iter().map(of).collect()
+    said.into_iter().map(|kind| (kind.first, like_it(kind.more, &kind.others))).collect()
 }
 
 /// How many remarks are like one, and of which other channels.
