@@ -57,9 +57,9 @@ pub(crate) fn seek(
     let usual = || catalogue::within(&Facts::new(&nominal.built, stage.tapes), &USUAL);
     let numbers = plant.scenario.tolerance.is_exact().then(usual);
     let begun = (!known.members.is_empty()).then(|| beginning(&problem, &nominal, known)).transpose()?;
-    let mut found = search(&problem, (nominal, begun), &hypotheses, numbers)?;
+    let (mut found, searched) = search(&problem, (nominal, begun), &hypotheses, numbers)?;
     let heard = problem.clone().heard_by(&found.best.set)?;
-    if let Some(best) = heard.reheard(&problem, &found.best)? {
+    if let Some(best) = heard.reheard(&searched, &found.best)? {
         found.best = to_the_end(&heard, best);
     }
     let after = remainder(&heard, &found.best)?;

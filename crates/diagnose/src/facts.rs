@@ -1,7 +1,7 @@
 //! What the nominal model and the recording offer to hypotheses: places and nominal numbers.
 
+use crate::limits::scalar;
 use crate::plant::Built;
-use crate::reading::Value;
 use crate::tape::{CommandTape, Commanded, Tape};
 use contact::{Normal, NormalLaw};
 use friction::Friction;
@@ -105,6 +105,7 @@ fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
             let given =
                 |c: &CommandTape| Some((c.values.iter().fold(0.0_f64, |m, e| m.max(e.abs())), limit(c.actuator)?));
             let largest = efforts.filter_map(given).fold(0.0_f64, |m, (asked, limit)| m.max(asked.min(limit)));
+            let largest = largest.max(asked_of_drive(built, tapes, coordinate));
             all.push(JointFact {
                 name: joint_name(built, &vehicle.name, &joint.name),
                 coordinate,
@@ -115,6 +116,37 @@ fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
         }
     }
     all
+}
+
+/// What a drive that follows a recorded reference is asked for, N·m or N, by how far the joint was read beside that; but for the hundredth of the samples at
+/// which it is asked for most. Zero where nothing reads the joint.
+fn asked_of_drive(built: &Built, tapes: &[Tape], coordinate: usize) -> f64 {
+    let drives = built.model.actuators.iter().enumerate().filter_map(|(i, a)| match a.kind {
+        ActuatorKind::JointDrive { coordinate: c, stiffness, damping, limit } if c == coordinate => {
+            Some((i, [stiffness, damping], limit))
+        }
+        _ => None,
+    });
+    let asked = |(i, [stiffness, damping], limit): (usize, [f64; 2], f64)| {
+        let commands = tapes.iter().flat_map(|t| t.commands.iter().map(move |c| (t, c)));
+        let of = |(tape, command): (&Tape, &CommandTape)| {
+            let gain = |q: Quantity| match (command.what, q) {
+                (Commanded::Position, Quantity::JointPosition(c)) if c == coordinate => Some(stiffness),
+                (Commanded::Velocity, Quantity::JointVelocity(c)) if c == coordinate => Some(damping),
+                _ => None,
+            };
+            let read = |r: &crate::reading::Reading| {
+                let gain = gain(r.quantity)?;
+                let pairs = r.times.iter().zip(&r.values);
+                Some(pairs.map(|(t, x)| gain * (command.at(*t) - scalar(x)).abs()).collect::<Vec<f64>>())
+            };
+            tape.readings.iter().filter_map(read).flatten().collect::<Vec<f64>>()
+        };
+        let mut all: Vec<f64> = commands.filter(|(_, c)| c.actuator == i).flat_map(of).collect();
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() * 99 / 100).map_or(0.0, |most| most.min(limit))
+    };
+    drives.map(asked).fold(0.0, f64::max)
 }
 
 /// A joint as places call it: with its vehicle where several have one of that name.
@@ -137,10 +169,7 @@ fn qualified(vehicle: &str, name: &str, namesakes: usize) -> String {
 fn travel(tapes: &[Tape], coordinate: usize) -> f64 {
     let is_own = |q: Quantity| q == Quantity::JointPosition(coordinate) || q == Quantity::JointLinkPosition(coordinate);
     let readings = tapes.iter().flat_map(|t| &t.readings).filter(|r| is_own(r.quantity));
-    let places = readings.flat_map(|r| &r.values).filter_map(|v| match v {
-        Value::Vector(x) => Some(x.x),
-        Value::Rotation(_) => None,
-    });
+    let places = readings.flat_map(|r| &r.values).map(scalar).filter(|x| x.is_finite());
     let [low, high] = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
     (high - low).max(0.0)
 }

@@ -39,6 +39,7 @@ pub mod locate;
 mod lost;
 mod mounts;
 mod noise;
+mod nothing;
 mod number;
 mod output;
 mod pace;

@@ -90,8 +90,8 @@ fn farthest(mut beyond: Vec<(f64, f64)>, count: usize) -> Option<f64> {
     beyond.get(SAMPLES.max((SHARE * count as f64) as usize)).map(|p| p.1)
 }
 
-/// What is read of a joint.
-fn scalar(value: &Value) -> f64 {
+/// What is read of a joint; no number where that is an orientation.
+pub(crate) fn scalar(value: &Value) -> f64 {
     match value {
         Value::Vector(v) => v.x,
         Value::Rotation(_) => f64::NAN,
@@ -139,7 +139,7 @@ fn speeds_of(reading: &Reading, coordinate: usize) -> Vec<(f64, f64, f64)> {
 
 impl CommandTape {
     /// The command that is held at an instant; the first one before it begins.
-    fn at(&self, time: f64) -> f64 {
+    pub(crate) fn at(&self, time: f64) -> f64 {
         let next = self.times.partition_point(|t| *t <= time);
         self.values.get(next.saturating_sub(1)).copied().unwrap_or(0.0)
     }

@@ -120,7 +120,8 @@ fn clean_reading(run: &RecordedRun, reading: &Reading, said: &mut LeftOut) -> Op
         group.iter().map(|s| find_bad(s, std::mem::take(&mut alone), noise)).collect::<Vec<Bad>>()
     };
     let found: Vec<Bad> = groups.flat_map(of_group).collect();
-    let is_dead = |bad: &Bad| !is_orientation && bad.share() > DEAD;
+    // Of an orientation a component that stands still is none that fails: a body in the plane turns about one axis.
+    let is_dead = |bad: &Bad| bad.share() > DEAD;
     let axes: Vec<usize> = if is_orientation {
         reading.axes.clone()
     } else {
@@ -131,7 +132,7 @@ fn clean_reading(run: &RecordedRun, reading: &Reading, said: &mut LeftOut) -> Op
     if axes.is_empty() || kept.is_empty() || (kept.len(), axes.len()) == (reading.times.len(), reading.axes.len()) {
         return None;
     }
-    found.iter().for_each(|b| said.add(&reading.channel, b));
+    found.iter().filter(|b| !(is_orientation && is_dead(b))).for_each(|b| said.add(&reading.channel, b));
     Some(Reading { axes, ..reading.of_samples(&kept) })
 }
 
@@ -203,7 +204,8 @@ impl Noise {
                     && (set.sigma(&s.channel).or_else(|| set.sigma(channel))).is_some()
             });
             let whole = typical_rms(&slices);
-            let found = Found { white: part.variance.sqrt(), is_floor: part.is_floor, whole };
+            let found =
+                Found { white: part.variance.sqrt(), is_floor: part.is_floor, whole, forgets: forgets(&slices) };
             let Some(factor) = factor_of(found, is_stated).filter(|f| *f > AT_REST) else { continue };
             // What a coarse encoder reads of a slow motion stays the same from sample to sample, and is wrong by its rounding.
             let factor = factor.max(least_factor(stage.tapes, channel));
@@ -277,12 +279,31 @@ struct Found {
     is_floor: bool,
     /// Of all of them, in the typical window.
     whole: f64,
+    /// Whether they are those of a noise that soon forgets.
+    forgets: bool,
 }
 
+/// Whether what is left is coloured as the noise of a filtered sensor is: alike from sample to sample, ever less so, and nowhere opposite, as what swings is.
+fn forgets(stretches: &[&[f64]]) -> bool {
+    let product = |s: &&[f64], lag: usize| s.iter().zip(s.iter().skip(lag)).map(|(a, b)| a * b).sum::<f64>();
+    let pairs = |s: &&[f64], lag: usize| s.len().saturating_sub(lag) as f64;
+    let of = |lag: usize| {
+        let [all, count] = [product, pairs].map(|f| stretches.iter().map(|s| f(s, lag)).sum::<f64>());
+        all / count.max(1.0)
+    };
+    let alike: Vec<f64> = (1..=MEMORY).map(|lag| of(lag) / of(0)).collect();
+    alike.iter().all(|r| *r > -FORGOTTEN) && alike[MEMORY / 2..].iter().all(|r| *r < FORGOTTEN)
+}
+
+/// Samples after which noise has forgotten what it was, at the latest after half as many more, and correlation that is none.
+const MEMORY: usize = 24;
+const FORGOTTEN: f64 = 0.1;
+
 /// The factor of a channel's σ; none where the samples do not speak against it.
-fn factor_of(Found { white, is_floor, whole }: Found, is_stated: bool) -> Option<f64> {
+fn factor_of(Found { white, is_floor, whole, forgets }: Found, is_stated: bool) -> Option<f64> {
     let s = match is_stated {
         // Noise that is less than stated from one sample to the next may be coloured: only what is less as a whole is less.
+        true if forgets => white.max(whole),
         true => white.max(whole.min(1.0)),
         // Raw samples bound the noise from above.
         false => white.min(1.0),
@@ -351,9 +372,36 @@ mod tests {
     }
 
     #[test]
+    fn coloured_noise_forgets_and_what_swings_or_drifts_does_not() {
+        let mut state = 1u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let white: Vec<f64> = (0..4000).map(|_| uniform()).collect();
+        let coloured = |by: f64| {
+            let mut last = 0.0;
+            white
+                .iter()
+                .map(|w| {
+                    last = by * last + w;
+                    last
+                })
+                .collect::<Vec<f64>>()
+        };
+        let beside =
+            |motion: fn(f64) -> f64| white.iter().enumerate().map(|(i, w)| w + motion(i as f64)).collect::<Vec<f64>>();
+        assert!([0.0, 0.5, 0.8].iter().all(|by| forgets(&[&coloured(*by)])));
+        assert!(!forgets(&[&coloured(0.97)]), "slow");
+        assert!(!forgets(&[&beside(|i| (0.3 * i).sin())]), "what swings");
+        assert!(!forgets(&[&beside(|i| (0.003 * i).sin())]), "what drifts");
+    }
+
+    #[test]
     fn a_stated_figure_is_believed_within_some_per_cent_and_left_by_far_only_for_white_noise() {
-        let factor = |white, whole, is_stated| factor_of(Found { white, is_floor: false, whole }, is_stated);
-        let with_floor = |white, whole| factor_of(Found { white, is_floor: true, whole }, true);
+        let factor =
+            |white, whole, is_stated| factor_of(Found { white, is_floor: false, whole, forgets: false }, is_stated);
+        let with_floor = |white, whole| factor_of(Found { white, is_floor: true, whole, forgets: false }, true);
         assert_eq!([with_floor(3.0, 40.0), with_floor(0.3, 1.0), with_floor(9.0, 40.0)], [Some(3.0), None, None]);
         assert_eq!(factor(1.02, 1.02, true), None);
         assert_eq!(factor(1.43, 1.43, true), Some(1.43));
@@ -362,6 +410,12 @@ mod tests {
         assert_eq!([factor(5.0, 5.0, true), factor(0.3, 0.3, true)], [Some(5.0), Some(0.3)], "white as a whole");
         // Coloured: less from one sample to the next, as much as a whole.
         assert_eq!(factor(0.45, 1.0, true), None);
+        let coloured = |white, whole| factor_of(Found { white, is_floor: false, whole, forgets: true }, true);
+        assert_eq!(
+            [coloured(0.75, 1.25), coloured(0.75, 40.0)],
+            [Some(1.25), None],
+            "more than stated, and soon forgotten"
+        );
         // Raw samples bound it from above.
         assert_eq!([factor(3.0, 3.0, false), factor(0.2, 9.0, false)], [None, Some(0.2)]);
     }

@@ -27,6 +27,7 @@ use crate::linear::{self, Segment, Stage, Steps};
 use crate::locate::{Located, locate, locate_in, places};
 use crate::lost;
 use crate::noise::{self, Noise};
+use crate::nothing;
 use crate::pace::{self, Discretisation};
 use crate::plant::{Built, Plant};
 use crate::replay::Pace;
@@ -241,7 +242,7 @@ fn diagnose_in(
     let (thin, stage) = (stage, Stage { tapes: &tapes, ..stage });
     // What only concerns the nominal model bears its own steps.
     let few = Stage { pace, ..thin };
-    let found = fit_to_all((&thin, &stage), &plant, standing)?;
+    let found = nothing::dropped(&stage, &plant, fit_to_all((&thin, &stage), &plant, standing)?)?;
     work.watch.step(&format!("error {:.3} of all samples", found.rms()));
     if work.was_ended() {
         said.push(SPENT.to_owned());
@@ -302,6 +303,7 @@ fn diagnose_whole(
     let few = &Stage { pace: discretisation.pace, ..*few };
     let stage = Stage { tapes: &tapes, ..*few };
     let course = along::told_by_all_runs(few, plant, &own, course)?;
+    let course = nothing::dropped_along(few, plant, &own, course)?;
     let thin_best = course.found.best.clone();
     let course = along::fit_to_all((few, &stage), plant, &own, course)?;
     said.extend(work.was_ended().then(|| SPENT.to_owned()));

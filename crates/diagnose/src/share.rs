@@ -30,6 +30,8 @@ const HARM: f64 = 1.2;
 /// Error in windows (units of noise) and share of the mismatch up to which what is left on runs that were left out is no second explanation's.
 pub(crate) const LEFT: f64 = 1.5;
 pub(crate) const NEXT_TO_NOTHING: f64 = 0.01;
+/// Error over whole runs (units of noise) up to which they are followed: what does not settle leads apart by far more.
+const FOLLOWED: f64 = 10.0;
 /// Error of what is predicted as well as noise allows, in units of that: figures of noise are known to a per cent or two.
 const QUIET: f64 = 1.02;
 /// What is left beyond doubt, in standard deviations of what noise alone leaves.
@@ -113,11 +115,18 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
     let is_still = |[_, after]: [f64; 2]| after <= QUIET;
     let in_windows = [Role::Fit, judging].map(|role| judgement.rms_of(tapes, true, role));
     let is_quiet = left_out && whole.is_some_and(is_still) && in_windows.into_iter().flatten().all(is_still);
-    let is_whole = leaves_little && harmed.is_empty() && !leads_astray;
+    let is_whole = leaves_little && harmed.is_empty() && !leads_astray && !drifts(judgement, tapes);
     (
         Explained { share: all.share(), interval, window_s, runs: count, left_out, harmed },
         Use { helps, leaves_little, is_quiet, is_whole },
     )
+}
+
+/// Whether the corrected model follows whole runs and is off along most of them by more than noise: windows are too short for what is left.
+fn drifts(judgement: &Judgement, tapes: &[Tape]) -> bool {
+    let mut after: Vec<f64> = (0..tapes.len()).map(|run| judgement.rms(false, |r| r == run)[1]).collect();
+    after.sort_by(f64::total_cmp);
+    after.get(after.len().saturating_sub(1) / 2).is_some_and(|typical| (LEFT..FOLLOWED).contains(typical))
 }
 
 /// Windows by run.

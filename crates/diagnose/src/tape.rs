@@ -275,6 +275,13 @@ fn is_orientation(quantity: &Quantity) -> bool {
     quantity.is_orientation()
 }
 
+/// Axes about which an orientation is read to turn: all, or the one of a body in the plane, whose quaternion has nothing but zeros along the others.
+fn turning(parts: &[(usize, &Series)]) -> Vec<usize> {
+    let is_still = |axis: &usize| parts.iter().any(|(k, s)| k == axis && s.values.iter().all(|v| *v == 0.0));
+    let turning: Vec<usize> = (0..3).filter(|axis| !is_still(axis)).collect();
+    if turning.len() == 1 { turning } else { vec![0, 1, 2] }
+}
+
 /// One reading of the components that were sampled together; where they were not, one each.
 fn readings_of(set: &RecordingSet, prefix: &str, quantity: Quantity, group: &[(usize, &Series)]) -> Vec<Reading> {
     let together = group.iter().all(|(_, s)| s.times == group[0].1.times);
@@ -291,7 +298,7 @@ fn readings_of(set: &RecordingSet, prefix: &str, quantity: Quantity, group: &[(u
         let sigma = stated.or_else(told).unwrap_or(0.0).hypot(rounding);
         let times = part[0].1.times.clone();
         let values = (0..times.len()).map(|i| value_at(part, i, orientation)).collect();
-        let axes = if orientation { vec![0, 1, 2] } else { part.iter().map(|(k, _)| *k).collect() };
+        let axes = if orientation { turning(part) } else { part.iter().map(|(k, _)| *k).collect() };
         let (channel, times) = (prefix.to_owned(), times.to_vec());
         Reading { channel, quantity, axes, sigma, rounding, times, values, blur: Vec::new(), late_s: 0.0 }
     };

@@ -5,7 +5,9 @@ use super::enough::Enough;
 use super::left::{Left, Smaller};
 use super::pool::Pool;
 use super::regression::Spoken;
-use super::search::{AT_ONCE, LOOK, Looked, NEXT_TO_NOTHING, Tried, criterion, names, remainder, to_the_end};
+use super::search::{
+    AT_ONCE, END, LOOK, Looked, NEXT_TO_NOTHING, Remainder, Tried, criterion, names, remainder, to_the_end,
+};
 use super::sets::LinearSet;
 use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
@@ -61,14 +63,14 @@ pub(super) fn fit_sets(
     let mut worthy: Vec<(usize, Fitted)> = Vec::new();
     let mut smaller: Vec<Smaller> = Vec::new();
     let (pool, watch) = (&looked.pool, problem.stage.work.watch);
-    let [mut done, mut refuted] = [const { Vec::<Vec<String>>::new() }; 2];
+    let mut known = Known::default();
     let mut enough: Vec<Enough> = Vec::new();
-    while let Some(set) = next(looked, now, (&done, &refuted), !enough.is_empty()) {
-        if done.len() == ALL_FITTED || problem.stage.work.is_spent(Until::Search) {
+    while let Some(set) = next(looked, now, &mut known, !enough.is_empty()) {
+        if known.done.len() == ALL_FITTED || problem.stage.work.is_spent(Until::Search) {
             break;
         }
         let added: Vec<String> = set.members.iter().map(|m| pool.of(m.0).title()).collect();
-        done.push(pool.titles(set.members.iter().map(|m| m.0)));
+        known.done.push(pool.titles(set.members.iter().map(|m| m.0)));
         let costs = pool.price(&set.members.iter().map(|m| m.0).collect::<Vec<_>>(), now.count);
         let promised = now.score - set.score;
         if enough.iter().any(|known| known.outdoes(&added, costs)) || is_own && promised < costs || promised < least {
@@ -76,7 +78,7 @@ pub(super) fn fit_sets(
         }
         let fit = fit_first(problem, now, &set, pool, (many, here));
         let Ok((same, fit)) = fit.inspect_err(|error| watch.step(&format!("  {}: {error}", added.join("; ")))) else {
-            refuted.push(added);
+            known.refuted.push(added);
             continue;
         };
         if let Some(same) = same {
@@ -89,9 +91,7 @@ pub(super) fn fit_sets(
         let (names, power) = (names(&fit.set), problem.power(&fit));
         let gains = format!("promised {promised:.1}, brought {brought:.1}, criterion {:.1}", after - before);
         watch.step(&format!("  {names}: {gains}, {:.3} % left", 100.0 * power / here));
-        if brought < REFUTED * promised {
-            refuted.push(added.clone());
-        }
+        known.judge(set, &added, [promised, brought]);
         if left.rise < cheapest || power < NEXT_TO_NOTHING * here {
             enough.push(Enough { titles: added.clone(), limit: costs + left.rise });
         }
@@ -105,14 +105,14 @@ pub(super) fn fit_sets(
             worthy.push((tried.len() - 1, fit));
         }
     }
-    Ok(best_of(problem, worthy, tried, (before, many)))
+    Ok(best_of(problem, worthy, tried, (before, here, many)))
 }
 
 /// A proposal fitted beside a fit, and that on the same intervals where these are others.
 fn fit_first(
     problem: &Problem<'_>,
     now: &Fitted,
-    Proposal { members, spread, score }: &Proposal,
+    Proposal { members, spread, score, is_again }: &Proposal,
     pool: &Pool,
     (many, here): (usize, f64),
 ) -> Result<(Option<Fitted>, Fitted), DiagnoseError> {
@@ -120,6 +120,11 @@ fn fit_first(
     let set = members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
     let look =
         |set: EffectSet| problem.fit(&begun, set, LOOK).map(|fit| but_for_a_detail(problem, now, fit, (many, here)));
+    if *is_again {
+        let near = NEAR.into_iter().filter_map(|share| look(set.a_share_of_the_way(&now.set, share)).ok());
+        let mut near = near.filter(|(same, fit)| fit.score < same.as_ref().unwrap_or(now).score);
+        return near.next().ok_or_else(|| problem.lost());
+    }
     let first = look(set.clone())?;
     let gain = |(same, fit): &(Option<Fitted>, Fitted)| same.as_ref().unwrap_or(now).score - fit.score;
     let is_better = criterion(&first.1, many) < criterion(first.0.as_ref().unwrap_or(now), many);
@@ -131,25 +136,47 @@ fn fit_first(
     let better = |best: (_, Fitted), free: (_, Fitted)| {
         if criterion(&free.1, many) < criterion(&best.1, many) { free } else { best }
     };
-    let best = free.fold(first, better);
-    // What makes it worse than what changes nothing was promised too far away for what is linear: from near that, downhill.
-    let is_astray = |fit: &(_, Fitted)| gain(fit) < 0.0;
-    let near = || NEAR.into_iter().filter_map(|share| look(set.a_share_of_the_way(&now.set, share)).ok());
-    Ok(if is_astray(&best) { near().find(|fit| !is_astray(fit)).unwrap_or(best) } else { best })
+    Ok(free.fold(first, better))
 }
 
 /// Shares of the way to what is promised from which a fit is tried again that has led astray.
 const NEAR: [f64; 2] = [0.25, 0.01];
 
-/// What is fitted next: the first of the proposals that was not yet, and of laws alone where nothing was enough.
-fn next(
-    looked: &Looked,
-    now: &Fitted,
-    (done, refuted): (&[Vec<String>], &[Vec<String>]),
-    is_enough: bool,
-) -> Option<Proposal> {
-    let promising = next_of(proposals(looked, now, refuted), &looked.pool, done);
-    promising.or_else(|| if is_enough { None } else { next_of(alone(looked, now), &looked.pool, done) })
+/// What is known of the sets of a round.
+#[derive(Default)]
+struct Known {
+    /// Those that were fitted, and titles of those that brought next to nothing of what they promised.
+    done: Vec<Vec<String>>,
+    refuted: Vec<Vec<String>>,
+    /// Those that became worse than what changes nothing: promised too far away for what is linear.
+    astray: Vec<Proposal>,
+}
+
+impl Known {
+    /// Takes note of what a set brought.
+    fn judge(&mut self, set: Proposal, added: &[String], [promised, brought]: [f64; 2]) {
+        if set.is_again && brought >= REFUTED * promised {
+            self.refuted.retain(|known| known != added);
+        } else if !set.is_again && brought < REFUTED * promised {
+            self.refuted.push(added.to_vec());
+        }
+        if !set.is_again && brought < 0.0 {
+            self.astray.push(Proposal { is_again: true, ..set });
+        }
+    }
+}
+
+/// What is fitted next: the first of the proposals that was not yet; where nothing was enough, before sets of several what went astray, from near what
+/// changes nothing, and after them laws alone.
+fn next(looked: &Looked, now: &Fitted, known: &mut Known, is_enough: bool) -> Option<Proposal> {
+    let promising = next_of(proposals(looked, now, &known.refuted), &looked.pool, &known.done);
+    if is_enough {
+        return promising;
+    }
+    if promising.as_ref().is_none_or(|p| p.members.len() > 1) && !known.astray.is_empty() {
+        return Some(known.astray.remove(0));
+    }
+    promising.or_else(|| next_of(alone(looked, now), &looked.pool, &known.done))
 }
 
 /// The first proposal that was not fitted yet.
@@ -158,24 +185,30 @@ fn next_of(proposals: Vec<Proposal>, pool: &Pool, done: &[Vec<String>]) -> Optio
 }
 
 /// The best of some fits, each with its number among those tried; those that are next to as good as it are taken to the end first, and told as they are there.
-/// And the best of those with fewer effects.
+/// And another way to begin: the best of those with fewer effects.
 fn best_of(
     problem: &Problem<'_>,
     worthy: Vec<(usize, Fitted)>,
     tried: &mut [Tried],
-    (before, many): (f64, usize),
+    (before, here, many): (f64, f64, usize),
 ) -> Option<(Fitted, Option<Fitted>)> {
     let gain = |fit: &Fitted| before - criterion(fit, many);
     let close = |all: &[(usize, Fitted)]| {
         let most = all.iter().map(|(_, fit)| gain(fit)).fold(f64::NEG_INFINITY, f64::max);
         most - CLOSE * most.abs()
     };
-    // What leaves more than noise is not followed to the end of what it does without what it holds in reserve.
+    // What leaves more than noise, with derivatives of its own at its own clock as well, is not followed to the end of what it does without what it holds in
+    // reserve.
     let free = |(index, fit): &(usize, Fitted)| {
+        let has_reserve = fit.set.findings().any(|(h, _)| !h.reserve.is_empty());
         let is_noise = remainder(problem, fit).is_ok_and(|left| left.is_noise());
-        (*index, if is_noise { fit.clone() } else { relaxed(problem, fit.clone(), many) })
+        let fit = match is_noise || !has_reserve {
+            true => fit.clone(),
+            false => noise_alone(problem, fit, here).unwrap_or_else(|| relaxed(problem, fit.clone(), many)),
+        };
+        (*index, fit)
     };
-    let to_the_end = |(index, fit): (usize, Fitted)| {
+    let mut to_the_end = |(index, fit): (usize, Fitted)| {
         let fit = to_the_end(problem, fit);
         let of: &mut Tried = &mut tried[index];
         of.set.clone_from(&fit.set);
@@ -186,12 +219,35 @@ fn best_of(
     let least = close(&worthy);
     let freed: Vec<(usize, Fitted)> = worthy.iter().filter(|(_, fit)| gain(fit) >= least).map(free).collect();
     let least = close(&freed);
-    let best = freed.into_iter().filter(|(_, fit)| gain(fit) >= least).map(to_the_end).min_by(by_criterion)?;
+    let best = freed.into_iter().filter(|(_, fit)| gain(fit) >= least).map(&mut to_the_end).min_by(by_criterion)?;
+    // What bears most of the missing force goes before what is likelier and leaves most of it.
+    let power = |fit: &Fitted| problem.power(fit) / here;
+    let most = worthy.iter().min_by(|a, b| power(&a.1).total_cmp(&power(&b.1)));
+    if let Some(bears) = most.filter(|(_, fit)| power(fit) < BEARS[0] && power(&best) > BEARS[1]) {
+        return Some((to_the_end(free(bears)), Some(best)));
+    }
     let effects = |fit: &Fitted| fit.set.findings().count();
     let smaller = worthy.into_iter().map(|(_, fit)| fit).filter(|fit| effects(fit) < effects(&best));
     let smaller = smaller.min_by(by_criterion);
     Some((best, smaller))
 }
+
+/// A fit that leaves so little (`here`: of how much) that noise alone may be left at the clock of what it is, followed there, where that is so.
+fn noise_alone(problem: &Problem<'_>, fit: &Fitted, here: f64) -> Option<Fitted> {
+    if problem.power(fit) > UNHEARD * here {
+        return None;
+    }
+    let heard = problem.clone().heard_by(&fit.set).ok()?;
+    let begun = heard.reheard(problem, fit).ok()?;
+    let ended = heard.fit(begun.as_ref().unwrap_or(fit), fit.set.clone(), END).ok()?;
+    remainder(&heard, &ended).ok().filter(Remainder::is_noise)?;
+    if begun.is_some() { problem.onto(&ended).ok() } else { Some(ended) }
+}
+
+/// Share of the missing force that a right law may leave at the clock of the nominal model.
+const UNHEARD: f64 = 1e-4;
+/// Shares of the missing force that are left by what bears most of it, and by what bears little.
+const BEARS: [f64; 2] = [0.1, 0.5];
 
 /// A set that is worth a fit.
 struct Proposal {
@@ -201,6 +257,8 @@ struct Proposal {
     score: f64,
     /// Spread to begin with.
     spread: Spread,
+    /// Whether it led astray before, and is begun near what changes nothing.
+    is_again: bool,
 }
 
 /// The sets that are worth a fit: those that promise most by the criterion, of the chain and of the missing force, smaller ones first. What adds to a
@@ -224,6 +282,7 @@ fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Prop
         members: s.members.clone(),
         score: now.score + s.change,
         spread: now.spread.clone(),
+        is_again: false,
     });
     let is_worth = |s: &&&LinearSet| now.score - s.score >= PROMISING * most;
     let worth = (1..=AT_ONCE).flat_map(|size| {
@@ -231,8 +290,12 @@ fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Prop
         sets.iter().filter(is_worth).filter(of_size).take(FITTED)
     });
     let single = sets.iter().find(|s| s.members.len() == 1);
-    let by_chain =
-        worth.chain(single).map(|s| Proposal { members: s.members.clone(), score: s.score, spread: s.spread.clone() });
+    let by_chain = worth.chain(single).map(|s| Proposal {
+        members: s.members.clone(),
+        score: s.score,
+        spread: s.spread.clone(),
+        is_again: false,
+    });
     let siblings = single.map_or_else(Vec::new, |single| siblings(looked, now, single));
     let mut all: Vec<Proposal> = Vec::new();
     // What the missing force says of a law is nearer to it where no line follows that.
@@ -249,7 +312,7 @@ fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Prop
 fn scored(pool: &Pool, now: &Fitted, s: &Score, spread: &Spread) -> Option<Proposal> {
     let entry = pool.entries.iter().position(|e| e.hypothesis == s.hypothesis && e.point == s.point)?;
     let members = vec![(entry, s.start.clone())];
-    Some(Proposal { members, score: now.score - s.score, spread: spread.clone() })
+    Some(Proposal { members, score: now.score - s.score, spread: spread.clone(), is_again: false })
 }
 
 /// Laws alone that promise anything, the most promising first, a form of each.

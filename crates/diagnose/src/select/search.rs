@@ -80,7 +80,7 @@ pub const NEXT_TO_NOTHING: f64 = 1e-3;
 /// Iterations of a first fit, and to the end.
 pub(super) const LOOK: Reach = Reach { iterations: 6, reuse: true };
 pub(super) const GLANCE: Reach = Reach { iterations: 3, reuse: true };
-const END: Reach = Reach { iterations: 6, reuse: false };
+pub(super) const END: Reach = Reach { iterations: 6, reuse: false };
 /// Most times that a fit is followed anew to its end, and fall of −2 log likelihood that is worth another time.
 const ENDS: usize = 5;
 const WORTH: f64 = 3.0;
@@ -95,13 +95,13 @@ pub fn criterion(fit: &Fitted, many: usize) -> f64 {
 }
 
 /// Searches for what a nominal model leaves out, from that or from a set that is `begun` with; `hypotheses` of a model, and the nominal numbers that may stand
-/// for what is left.
-pub fn search(
-    problem: &Problem<'_>,
+/// for what is left. And the problem at whose clock the best set stands.
+pub fn search<'a>(
+    problem: &Problem<'a>,
     (nominal, begun): (Fitted, Option<Fitted>),
     hypotheses: &Hypotheses<'_>,
     numbers: Option<EffectSet>,
-) -> Result<Found, DiagnoseError> {
+) -> Result<(Found, Problem<'a>), DiagnoseError> {
     let nominal = at_rest(problem, nominal)?;
     let first = hypotheses(&nominal)?;
     // What a nominal model leaves that is far from what the runs did is no measure of what is left beside another one.
@@ -129,6 +129,8 @@ pub fn search(
     let Search { mut found, mut known, .. } = search;
     // A joint that yields by now is no more one that may begin to, and yet that is what a joint with play becomes.
     known.extend(first);
+    let (heard, now) = heard(problem, now, all)?;
+    let problem = &heard;
     let before = now.score;
     // Where noise alone is left, nothing tells of what laws hold in reserve.
     let free = match remainder(problem, &now)?.is_noise() {
@@ -144,7 +146,17 @@ pub fn search(
         found.best = simplified(problem, found.best, &known, (many, all))?;
     }
     found.criteria = [&found.nominal, &found.best].map(|fit| criterion(fit, many));
-    Ok(found)
+    Ok((found, heard))
+}
+
+/// A fit that leaves next to nothing and yet more than noise at the clock of what it is: there it may be noise.
+fn heard<'a>(problem: &Problem<'a>, now: Fitted, all: f64) -> Result<(Problem<'a>, Fitted), DiagnoseError> {
+    if problem.power(&now) > NEXT_TO_NOTHING * all || remainder(problem, &now)?.is_noise() {
+        return Ok((problem.clone(), now));
+    }
+    let heard = problem.clone().heard_by(&now.set)?;
+    let now = heard.reheard(problem, &now)?.map_or(now, |anew| to_the_end(&heard, anew));
+    Ok((heard, now))
 }
 
 /// What could act beside a fit.

@@ -4,7 +4,7 @@
 //! (2k choose k) σ². The mean of the smaller three fifths of its squares is taken (impacts and spikes do not count, and a
 //! mean, unlike a median, does not jump on a lattice of rounded values), for k = 2 … 6: what motion is left falls with k,
 //! so the smallest is the estimate. Rounding's q²/12 is taken off. An orientation's components share
-//! one figure: the squares of their differences add to (2k choose k) σ²/4 · χ²(3), σ in rad about each axis.
+//! one figure: the squares of their differences add to (2k choose k) σ²/4 · χ²(3), σ in rad about each axis; where only one axis turns, χ²(1).
 
 use crate::Series;
 
@@ -28,6 +28,8 @@ const PAUSE: f64 = 1.6;
 pub fn white_noise(series: &[&Series]) -> Option<f64> {
     let first = series.first()?;
     let is_orientation = series.len() > 1;
+    // About one of its own axes: the components along the other two never change, and have no noise.
+    let is_planar = is_orientation && series.iter().filter(|s| s.values.iter().any(|v| *v != s.values[0])).count() == 2;
     let pause = PAUSE * first.median_step();
     let estimate = |order: usize| -> Option<f64> {
         let squares: Vec<f64> = (0..first.len().saturating_sub(order))
@@ -35,7 +37,7 @@ pub fn white_noise(series: &[&Series]) -> Option<f64> {
             .map(|i| series.iter().map(|s| difference(&s.values[i..=i + order]).powi(2)).sum())
             .collect();
         let mean = trimmed_mean(squares)?;
-        Some(mean / (binomial(2 * order, order) * TRIMMED[usize::from(is_orientation)]))
+        Some(mean / (binomial(2 * order, order) * TRIMMED[usize::from(is_orientation && !is_planar)]))
     };
     let variance = ORDERS.filter_map(estimate).reduce(f64::min)?;
     let (factor, q) = if is_orientation { (4.0, first.quantum() * 2.0) } else { (1.0, first.quantum()) };

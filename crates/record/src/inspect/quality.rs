@@ -137,8 +137,9 @@ pub fn spikes(parts: &[&Series], noise: f64) -> Vec<Spike> {
     let is_far = |i: &usize| parts.iter().map(|s| cubic(&s.values, *i).powi(2)).sum::<f64>() > FAR * FAR * variance;
     let spike_at = |i: usize, other: Option<usize>| {
         let (mut size, mut all, mut left) = (0.0, 0.0, 0.0);
+        let reach = if places.contains(&i) { 2 } else { 3 };
         for part in parts {
-            let told = told_by(|k| places.contains(&k).then(|| cubic(&part.values, k)), i, other);
+            let told = told_by(|k| places.contains(&k).then(|| cubic(&part.values, k)), (i, other), reach);
             size = if parts.len() == 1 { told.size } else { told.size.hypot(size) };
             (all, left) = (all + told.squares, left + told.left);
         }
@@ -147,7 +148,11 @@ pub fn spikes(parts: &[&Series], noise: f64) -> Vec<Spike> {
         (is_alone && is_large).then_some(Spike { t: first.times[i], size })
     };
     let far: Vec<usize> = places.clone().filter(is_far).collect();
-    let mut found: Vec<(usize, Spike)> = far.iter().filter_map(|i| Some((*i, spike_at(*i, None)?))).collect();
+    // The first two and the last two readings have none of their own: a logger's first record, or its last, may be empty.
+    let last = first.len() - 1;
+    let ends = [0, 1, last - 1, last].into_iter().filter(|i| far.contains(&(*i).clamp(2, last - 2)));
+    let mut found: Vec<(usize, Spike)> =
+        far.iter().copied().chain(ends).filter_map(|i| Some((i, spike_at(i, None)?))).collect();
     // Two near by hide each other; the neighbours of one are far for its sake.
     let open = far.iter().filter(|i| found.iter().all(|(at, _)| at.abs_diff(**i) > 1));
     let with_another = |i: &usize| {
@@ -173,9 +178,9 @@ struct Told {
     left: f64,
 }
 
-/// Least squares of a lone reading at `i`, and at another place where one is given, in differences from cubics where there are some.
-fn told_by(difference: impl Fn(usize) -> Option<f64>, i: usize, other: Option<usize>) -> Told {
-    let (low, high) = (i.min(other.unwrap_or(i)) - 2, i.max(other.unwrap_or(i)) + 2);
+/// Least squares of a lone reading at `i`, and at another place where one is given, in differences from cubics so far around where there are some.
+fn told_by(difference: impl Fn(usize) -> Option<f64>, (i, other): (usize, Option<usize>), reach: usize) -> Told {
+    let (low, high) = (i.min(other.unwrap_or(i)).saturating_sub(reach), i.max(other.unwrap_or(i)) + reach);
     let lone = |at: usize, k: usize| (k + 2).checked_sub(at).and_then(|n| LONE.get(n)).copied().unwrap_or(0.0);
     let (mut aa, mut ab, mut bb, mut ar, mut br, mut rr) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for (k, r) in (low..=high).filter_map(|k| Some((k, difference(k)?))) {
@@ -228,6 +233,11 @@ mod tests {
             _ => 0.0,
         };
         assert_eq!(found(&[&wave(0.0, spike)]), [60, 131]);
+        for ends in [[0, 199], [1, 198], [0, 198]] {
+            let empty = |i: usize| if ends.contains(&i) { -300.0 } else { 0.0 };
+            assert_eq!(found(&[&wave(0.0, empty)]), ends, "next to the ends");
+        }
+        assert!(found(&[&wave(0.0, |i| if i > 195 { 300.0 } else { 0.0 })]).is_empty(), "a step near the end");
         let pair = |i: usize| match i {
             60 => 25.0,
             62 => -20.0,

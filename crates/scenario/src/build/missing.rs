@@ -94,4 +94,4 @@ fn at_start(joint: &str) -> String {
 }
 
 const ARMATURE: &str = "give the links beyond it an inertia, or the joint an armature ([[effect]] name = \"joint-armature\", or \
-                        the reflected_inertia_kg_m2 of its [[actuator]])";
+                        the reflected_inertia_kg_m2 (reflected_mass_kg where it slides) of its [[actuator]])";
