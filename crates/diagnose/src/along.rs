@@ -12,10 +12,14 @@ use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem, Reach};
 use crate::linear::{Segment, Stage, Steps};
 use crate::lost;
+use crate::nothing;
 use crate::pace::{self, Discretisation};
 use crate::plant::Plant;
 use crate::replay::Span;
-use crate::select::search::{Found, NEXT_TO_NOTHING, Remainder, hypotheses_of, remainder, search, to_the_end};
+use crate::select::pool::price;
+use crate::select::search::{
+    Found, NEXT_TO_NOTHING, Remainder, criterion, hypotheses_of, remainder, search, to_the_end,
+};
 use crate::tell::near_the_best;
 use record::Role;
 use scenario::spec::Tolerance;
@@ -115,6 +119,44 @@ pub(crate) fn told_by_all_runs(
 
 /// Iterations of a fit to all runs: numbers are near.
 const ALL_RUNS: Reach = Reach { iterations: 3, reuse: true };
+
+/// Iterations of a fit without a finding: the others are near.
+const WITHOUT: Reach = Reach { iterations: 4, reuse: false };
+
+/// What was found along whole runs without what is not worth its price there any more.
+pub(crate) fn without_nothings(
+    stage: &Stage<'_>,
+    plant: &Plant,
+    own: &Facts,
+    course: Course,
+) -> Result<Course, DiagnoseError> {
+    let many = catalogue::hypotheses(own).len();
+    let problem = &problem(stage, plant, own, Role::Fit).heard_by(&course.found.best.set)?;
+    let mut best = course.found.best.clone();
+    'again: loop {
+        for member in nothing::weak(&best.set, &best.covariance, 1.0, |h| price(h, best.count, many)) {
+            let Ok(less) = problem.fit(&best, best.set.without(member), WITHOUT) else { continue };
+            let costs = criterion(&less, many) - criterion(&best, many);
+            let title = best.set.members[member].0.title();
+            problem.stage.work.watch.step(&format!("without {title}, which may be nothing: criterion {costs:.1}"));
+            if costs < 0.0 {
+                best = less;
+                continue 'again;
+            }
+        }
+        break;
+    }
+    if best.set.members.len() == course.found.best.set.members.len() {
+        return Ok(course);
+    }
+    let after = remainder(problem, &best)?;
+    let is_empty = best.set.members.is_empty();
+    // What states have come to beside what is none is the nominal model's as well.
+    let nominal = if is_empty { best.clone() } else { course.found.nominal.clone() };
+    let left = if is_empty { [after; 2] } else { [course.left[0], after] };
+    let criteria = if is_empty { [criterion(&best, many); 2] } else { course.found.criteria };
+    Ok(Course { found: Found { nominal, best, criteria, ..course.found }, left })
+}
 
 /// The runs of a role along which something is sought.
 pub(crate) fn problem<'a>(stage: &Stage<'a>, plant: &'a Plant, own: &Facts, role: Role) -> Problem<'a> {

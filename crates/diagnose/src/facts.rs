@@ -1,7 +1,7 @@
 //! What the nominal model and the recording offer to hypotheses: places and nominal numbers.
 
-use crate::limits::scalar;
 use crate::plant::Built;
+use crate::reading::{Reading, Value};
 use crate::tape::{CommandTape, Commanded, Tape};
 use contact::{Normal, NormalLaw};
 use friction::Friction;
@@ -41,7 +41,7 @@ impl Facts {
     /// Collects them.
     pub fn new(built: &Built, tapes: &[Tape]) -> Self {
         let sensors = tapes.first().map_or(Vec::new(), |t| {
-            let fact = |r: &crate::reading::Reading| SensorFact {
+            let fact = |r: &Reading| SensorFact {
                 channel: r.channel.clone(),
                 quantity: r.quantity,
                 axes: r.axes.clone(),
@@ -135,10 +135,10 @@ fn asked_of_drive(built: &Built, tapes: &[Tape], coordinate: usize) -> f64 {
                 (Commanded::Velocity, Quantity::JointVelocity(c)) if c == coordinate => Some(damping),
                 _ => None,
             };
-            let read = |r: &crate::reading::Reading| {
+            let read = |r: &Reading| {
                 let gain = gain(r.quantity)?;
                 let pairs = r.times.iter().zip(&r.values);
-                Some(pairs.map(|(t, x)| gain * (command.at(*t) - scalar(x)).abs()).collect::<Vec<f64>>())
+                Some(pairs.map(|(t, x)| gain * (command.at(*t) - x.scalar()).abs()).collect::<Vec<f64>>())
             };
             tape.readings.iter().filter_map(read).flatten().collect::<Vec<f64>>()
         };
@@ -169,7 +169,7 @@ fn qualified(vehicle: &str, name: &str, namesakes: usize) -> String {
 fn travel(tapes: &[Tape], coordinate: usize) -> f64 {
     let is_own = |q: Quantity| q == Quantity::JointPosition(coordinate) || q == Quantity::JointLinkPosition(coordinate);
     let readings = tapes.iter().flat_map(|t| &t.readings).filter(|r| is_own(r.quantity));
-    let places = readings.flat_map(|r| &r.values).map(scalar).filter(|x| x.is_finite());
+    let places = readings.flat_map(|r| &r.values).map(Value::scalar).filter(|x| x.is_finite());
     let [low, high] = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
     (high - low).max(0.0)
 }

@@ -79,7 +79,7 @@ fn place_beyond(tapes: &[Tape], coordinate: usize, [lower, upper]: [f64; 2]) -> 
     let is_place = |r: &&Reading| matches!(r.quantity, Quantity::JointPosition(v) | Quantity::JointLinkPosition(v) if v == coordinate);
     let readings: Vec<&Reading> = tapes.iter().flat_map(|t| &t.readings).filter(is_place).collect();
     let outside = |r: &Reading, q: f64| (lower - q).max(q - upper) - DEVIATIONS * r.sigma;
-    let places = readings.iter().flat_map(|r| r.values.iter().map(scalar).map(|q| (outside(r, q), q)));
+    let places = readings.iter().flat_map(|r| r.values.iter().map(Value::scalar).map(|q| (outside(r, q), q)));
     let count = readings.iter().map(|r| r.values.len()).sum();
     farthest(places.filter(|p| p.0 > 0.0).collect(), count)
 }
@@ -88,14 +88,6 @@ fn place_beyond(tapes: &[Tape], coordinate: usize, [lower, upper]: [f64; 2]) -> 
 fn farthest(mut beyond: Vec<(f64, f64)>, count: usize) -> Option<f64> {
     beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
     beyond.get(SAMPLES.max((SHARE * count as f64) as usize)).map(|p| p.1)
-}
-
-/// What is read of a joint; no number where that is an orientation.
-pub(crate) fn scalar(value: &Value) -> f64 {
-    match value {
-        Value::Vector(v) => v.x,
-        Value::Rotation(_) => f64::NAN,
-    }
 }
 
 /// The largest speed at which a joint was pushed on that outliers do not explain, where it is beyond the limit.
@@ -120,7 +112,7 @@ fn speed_beyond(tapes: &[Tape], (actuator, coordinate): (usize, usize), limit: f
 
 /// Instants, speeds and their standard deviations by what a reading says of a joint: measured, or told by positions some samples apart.
 fn speeds_of(reading: &Reading, coordinate: usize) -> Vec<(f64, f64, f64)> {
-    let value = |i: usize| scalar(&reading.values[i]);
+    let value = |i: usize| reading.values[i].scalar();
     let apart = |i: usize| {
         let (from, to) = (reading.times[i], reading.times[i + APART]);
         let speed = (value(i + APART) - value(i)) / (to - from);

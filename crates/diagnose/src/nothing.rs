@@ -3,25 +3,17 @@
 //! What was worth its price at the steps, the states or in the company of a search may be none within its error once it is fitted to the end: a corner within a
 //! step, states that came to rest, a synonym that took its place. Wald's statistic says which (1943), a fit without it decides.
 
-use crate::along::{self, Course};
-use crate::catalogue::hypotheses;
 use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
-use crate::facts::Facts;
 use crate::fit::{Effort, Fit, fit, pseudo_inverse};
 use crate::hypothesis::{Hypothesis, Scale};
-use crate::identify::fit::Reach;
 use crate::linear::{Segment, Stage};
 use crate::plant::Plant;
-use crate::select::pool::price;
-use crate::select::search::{Found, criterion, remainder};
 use nalgebra::{DMatrix, DVector};
-use record::Role;
 
 /// Wald's statistic, in prices, up to which a fit without a finding is tried.
 const WEAK: f64 = 2.0;
-/// A fit without one, along whole runs and in windows: the others are near.
-const WITHOUT: Reach = Reach { iterations: 4, reuse: false };
+/// A fit without one in windows: the others are near.
 const EFFORT: Effort = Effort { iterations: 6, share: 1e-5, floor: 0.002, ..Effort::NUMBERS };
 
 /// How far a finding is from nothing, (x − x₀)ᵀ Σ⁻¹ (x − x₀) of the numbers that turn it off; none where none of them does.
@@ -51,7 +43,12 @@ fn strength(set: &EffectSet, covariance: &DMatrix<f64>, member: usize) -> Option
 }
 
 /// Findings that may be nothing, the weakest first; `spread`: variance of what is left, in that of noise.
-fn weak(set: &EffectSet, covariance: &DMatrix<f64>, spread: f64, price: impl Fn(&Hypothesis) -> f64) -> Vec<usize> {
+pub(crate) fn weak(
+    set: &EffectSet,
+    covariance: &DMatrix<f64>,
+    spread: f64,
+    price: impl Fn(&Hypothesis) -> f64,
+) -> Vec<usize> {
     let is_finding = |m: &usize| !set.members[*m].0.is_tolerated();
     let of = |m: usize| Some((m, strength(set, covariance, m)? / spread));
     let mut all: Vec<(usize, f64)> = (0..set.members.len()).filter(is_finding).filter_map(of).collect();
@@ -60,42 +57,7 @@ fn weak(set: &EffectSet, covariance: &DMatrix<f64>, spread: f64, price: impl Fn(
     all.into_iter().map(|(m, _)| m).collect()
 }
 
-/// What was found along whole runs without what is not worth its price there any more.
-pub(crate) fn dropped_along(
-    stage: &Stage<'_>,
-    plant: &Plant,
-    own: &Facts,
-    course: Course,
-) -> Result<Course, DiagnoseError> {
-    let many = hypotheses(own).len();
-    let problem = &along::problem(stage, plant, own, Role::Fit).heard_by(&course.found.best.set)?;
-    let mut best = course.found.best.clone();
-    'again: loop {
-        for member in weak(&best.set, &best.covariance, 1.0, |h| price(h, best.count, many)) {
-            let Ok(less) = problem.fit(&best, best.set.without(member), WITHOUT) else { continue };
-            let costs = criterion(&less, many) - criterion(&best, many);
-            let title = best.set.members[member].0.title();
-            problem.stage.work.watch.step(&format!("without {title}, which may be nothing: criterion {costs:.1}"));
-            if costs < 0.0 {
-                best = less;
-                continue 'again;
-            }
-        }
-        break;
-    }
-    if best.set.members.len() == course.found.best.set.members.len() {
-        return Ok(course);
-    }
-    let after = remainder(problem, &best)?;
-    let is_empty = best.set.members.is_empty();
-    // What states have come to beside what is none is the nominal model's as well.
-    let nominal = if is_empty { best.clone() } else { course.found.nominal.clone() };
-    let left = if is_empty { [after; 2] } else { [course.left[0], after] };
-    let criteria = if is_empty { [criterion(&best, many); 2] } else { course.found.criteria };
-    Ok(Course { found: Found { nominal, best, criteria, ..course.found }, left })
-}
-
-/// The same of what was found in windows.
+/// What was found in windows without what is not worth its price there any more.
 pub(crate) fn dropped(stage: &Stage<'_>, plant: &Plant, mut found: Fit) -> Result<Fit, DiagnoseError> {
     'again: loop {
         // What is left that is no noise makes errors larger, and the cost of all that is fitted.

@@ -20,6 +20,16 @@ pub enum Value {
     Rotation(Rot),
 }
 
+impl Value {
+    /// The scalar, of an orientation no number.
+    pub(crate) fn scalar(&self) -> f64 {
+        match self {
+            Self::Vector(v) => v.x,
+            Self::Rotation(_) => f64::NAN,
+        }
+    }
+}
+
 impl From<scenario::measure::Reading> for Value {
     fn from(reading: scenario::measure::Reading) -> Self {
         match reading {

@@ -120,8 +120,8 @@ fn along_whole_runs(
     found.inspect_err(|error| work.watch.step(&format!("along whole runs nothing was found: {error}"))).ok()
 }
 
-/// What may be done along whole runs, relative to the usual: as much as in windows of two lengths.
-const ALONG: f64 = 2.0;
+/// What may be done along whole runs, relative to the usual.
+const ALONG: f64 = 1.5;
 
 /// The same in windows of one length, and of another where that explains too little; along whole runs as well where that leaves something and they may say
 /// more (`or_whole`).
@@ -302,8 +302,7 @@ fn diagnose_whole(
     let (course, discretisation) = along::at_suiting_steps(few, plant, &own, (course, window), discretisation)?;
     let few = &Stage { pace: discretisation.pace, ..*few };
     let stage = Stage { tapes: &tapes, ..*few };
-    let course = along::told_by_all_runs(few, plant, &own, course)?;
-    let course = nothing::dropped_along(few, plant, &own, course)?;
+    let course = along::without_nothings(few, plant, &own, along::told_by_all_runs(few, plant, &own, course)?)?;
     let thin_best = course.found.best.clone();
     let course = along::fit_to_all((few, &stage), plant, &own, course)?;
     said.extend(work.was_ended().then(|| SPENT.to_owned()));

@@ -11,6 +11,7 @@ use crate::hypothesis::Hypothesis;
 use crate::identify::fit::{Fitted, Problem};
 use crate::parsimony::plainer;
 use crate::standing::told;
+use crate::work::Until;
 use scenario::effects::candidate::Coordinate;
 
 /// Share of the missing force that a law leaves which is so but for a detail.
@@ -79,6 +80,9 @@ fn with_others(
     let speaks = |h: &Hypothesis| !dull.contains(&h.place);
     let all: Vec<String> = now.set.findings().filter(|(h, _)| speaks(h)).map(|(h, _)| h.title()).collect();
     for title in all {
+        if problem.stage.work.is_spent(Until::Prune) {
+            break;
+        }
         let Some(at) = now.set.members.iter().position(|(h, _)| h.title() == title) else { continue };
         let look = |(other, start): Member| {
             let set = now.set.without(at).with(&other, &start);
