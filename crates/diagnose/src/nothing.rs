@@ -78,3 +78,25 @@ pub(crate) fn dropped(stage: &Stage<'_>, plant: &Plant, mut found: Fit) -> Resul
         return Ok(found);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::hypotheses;
+    use crate::facts::Facts;
+
+    /// A viscous friction of four standard errors, and one of a half.
+    #[test]
+    fn a_number_within_its_error_may_be_nothing_and_one_far_beyond_is_something() {
+        let all = hypotheses(&Facts::of_joints(1));
+        let of = |name: &str| all.iter().find(|h| h.name == name).expect("it is in the library");
+        let set = EffectSet::default().with(of("joint-viscous-friction"), &[0.04]);
+        let known = |sigma: f64| DMatrix::from_element(1, 1, sigma * sigma);
+        assert!((strength(&set, &known(0.01), 0).expect("it has a level") - 16.0).abs() < 1e-9);
+        let price = |_: &Hypothesis| 5.0;
+        assert!(weak(&set, &known(0.01), 1.0, price).is_empty());
+        assert_eq!(weak(&set, &known(0.08), 1.0, price), [0]);
+        assert_eq!(weak(&set, &known(0.01), 4.0, price), [0], "what is left is no noise: errors are twice as large");
+        assert_eq!(strength(&set, &DMatrix::zeros(0, 0), 0), None, "nothing is known of its error");
+    }
+}
