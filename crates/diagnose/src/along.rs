@@ -131,22 +131,19 @@ pub(crate) fn without_nothings(
     course: Course,
 ) -> Result<Course, DiagnoseError> {
     let many = catalogue::hypotheses(own).len();
-    let problem = &problem(stage, plant, own, Role::Fit).heard_by(&course.found.best.set)?;
-    let mut best = course.found.best.clone();
-    'again: loop {
-        for member in nothing::weak(&best.set, &best.covariance, 1.0, |h| price(h, best.count, many)) {
-            let Ok(less) = problem.fit(&best, best.set.without(member), WITHOUT) else { continue };
-            let costs = criterion(&less, many) - criterion(&best, many);
-            let title = best.set.members[member].0.title();
-            problem.stage.work.watch.step(&format!("without {title}, which may be nothing: criterion {costs:.1}"));
-            if costs < 0.0 {
-                best = less;
-                continue 'again;
-            }
-        }
-        break;
+    let weak = |of: &Fitted| nothing::weak(&of.set, &of.covariance, 1.0, |h| price(h, of.count, many));
+    let known = &course.found.best;
+    if weak(known).is_empty() {
+        return Ok(course);
     }
-    if best.set.members.len() == course.found.best.set.members.len() {
+    let problem = &problem(stage, plant, own, Role::Fit).heard_by(&known.set)?;
+    let less = |of: &Fitted, member: usize| {
+        let Ok(less) = problem.fit(of, of.set.without(member), WITHOUT) else { return Ok(None) };
+        let costs = criterion(&less, many) - criterion(of, many);
+        Ok(nothing::is_better_by(costs, &of.set.members[member].0, stage.work.watch).then_some(less))
+    };
+    let best = nothing::without(known.clone(), weak, less)?;
+    if best.set.members.len() == known.set.members.len() {
         return Ok(course);
     }
     let after = remainder(problem, &best)?;

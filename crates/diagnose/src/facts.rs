@@ -121,32 +121,25 @@ fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
 /// What a drive that follows a recorded reference is asked for, N·m or N, by how far the joint was read beside that; but for the hundredth of the samples at
 /// which it is asked for most. Zero where nothing reads the joint.
 fn asked_of_drive(built: &Built, tapes: &[Tape], coordinate: usize) -> f64 {
-    let drives = built.model.actuators.iter().enumerate().filter_map(|(i, a)| match a.kind {
-        ActuatorKind::JointDrive { coordinate: c, stiffness, damping, limit } if c == coordinate => {
-            Some((i, [stiffness, damping], limit))
-        }
-        _ => None,
-    });
-    let asked = |(i, [stiffness, damping], limit): (usize, [f64; 2], f64)| {
-        let commands = tapes.iter().flat_map(|t| t.commands.iter().map(move |c| (t, c)));
-        let of = |(tape, command): (&Tape, &CommandTape)| {
-            let gain = |q: Quantity| match (command.what, q) {
-                (Commanded::Position, Quantity::JointPosition(c)) if c == coordinate => Some(stiffness),
-                (Commanded::Velocity, Quantity::JointVelocity(c)) if c == coordinate => Some(damping),
-                _ => None,
-            };
-            let read = |r: &Reading| {
-                let gain = gain(r.quantity)?;
-                let pairs = r.times.iter().zip(&r.values);
-                Some(pairs.map(|(t, x)| gain * (command.at(*t) - x.scalar()).abs()).collect::<Vec<f64>>())
-            };
-            tape.readings.iter().filter_map(read).flatten().collect::<Vec<f64>>()
+    let mut asked = Vec::new();
+    for (tape, command) in tapes.iter().flat_map(|t| t.commands.iter().map(move |c| (t, c))) {
+        let ActuatorKind::JointDrive { coordinate: own, stiffness, damping, limit } =
+            built.model.actuators[command.actuator].kind
+        else {
+            continue;
         };
-        let mut all: Vec<f64> = commands.filter(|(_, c)| c.actuator == i).flat_map(of).collect();
-        all.sort_by(f64::total_cmp);
-        all.get(all.len() * 99 / 100).map_or(0.0, |most| most.min(limit))
-    };
-    drives.map(asked).fold(0.0, f64::max)
+        for reading in tape.readings.iter().filter(|_| own == coordinate) {
+            let gain = match (command.what, reading.quantity) {
+                (Commanded::Position, Quantity::JointPosition(read)) if read == coordinate => stiffness,
+                (Commanded::Velocity, Quantity::JointVelocity(read)) if read == coordinate => damping,
+                _ => continue,
+            };
+            let pairs = reading.times.iter().zip(&reading.values);
+            asked.extend(pairs.map(|(t, x)| (gain * (command.at(*t) - x.scalar()).abs()).min(limit)));
+        }
+    }
+    asked.sort_by(f64::total_cmp);
+    asked.get(asked.len() * 99 / 100).copied().unwrap_or(0.0)
 }
 
 /// A joint as places call it: with its vehicle where several have one of that name.

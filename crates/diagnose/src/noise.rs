@@ -295,7 +295,7 @@ fn forgets(stretches: &[&[f64]]) -> bool {
     alike.iter().all(|r| *r > -FORGOTTEN) && alike[MEMORY / 2..].iter().all(|r| *r < FORGOTTEN)
 }
 
-/// Samples after which noise has forgotten what it was, at the latest after half as many more, and correlation that is none.
+/// Samples over which noise is alike less and less, from half of which on it has forgotten what it was; and correlation that is none.
 const MEMORY: usize = 24;
 const FORGOTTEN: f64 = 0.1;
 

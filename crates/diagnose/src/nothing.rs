@@ -9,6 +9,7 @@ use crate::fit::{Effort, Fit, fit, pseudo_inverse};
 use crate::hypothesis::{Hypothesis, Scale};
 use crate::linear::{Segment, Stage};
 use crate::plant::Plant;
+use crate::work::Watch;
 use nalgebra::{DMatrix, DVector};
 
 /// Wald's statistic, in prices, up to which a fit without a finding is tried.
@@ -57,26 +58,40 @@ pub(crate) fn weak(
     all.into_iter().map(|(m, _)| m).collect()
 }
 
-/// What was found in windows without what is not worth its price there any more.
-pub(crate) fn dropped(stage: &Stage<'_>, plant: &Plant, mut found: Fit) -> Result<Fit, DiagnoseError> {
-    'again: loop {
-        // What is left that is no noise makes errors larger, and the cost of all that is fitted.
-        let spread = found.rms().powi(2).max(1.0);
-        let count = (found.count as f64).ln();
-        let price = |h: &Hypothesis| (h.coordinates.len() - h.held.len()) as f64 * count + h.burden();
-        for member in weak(&found.set, &found.covariance, spread, price) {
-            let segments = found.segments.iter().map(|s| Segment { columns: None, ..s.clone() }).collect();
-            let less = fit(stage, plant, found.set.without(member), segments, EFFORT)?;
-            let (h, _) = &found.set.members[member];
-            let costs = (less.cost - found.cost) / spread - price(h);
-            stage.work.watch.step(&format!("without {}, which may be nothing: criterion {costs:.1}", h.title()));
-            if costs < 0.0 {
-                found = less;
-                continue 'again;
-            }
-        }
-        return Ok(found);
+/// A fit without the findings that it is better without, as long as there are some: `weak` says which may be, `less` what is left without one of them where
+/// that is better.
+pub(crate) fn without<F>(
+    mut found: F,
+    weak: impl Fn(&F) -> Vec<usize>,
+    less: impl Fn(&F, usize) -> Result<Option<F>, DiagnoseError>,
+) -> Result<F, DiagnoseError> {
+    while let Some(better) = weak(&found).into_iter().find_map(|member| less(&found, member).transpose()).transpose()? {
+        found = better;
     }
+    Ok(found)
+}
+
+/// Whether a fit is better without a finding, said.
+pub(crate) fn is_better_by(costs: f64, gone: &Hypothesis, watch: &dyn Watch) -> bool {
+    watch.step(&format!("without {}, which may be nothing: criterion {costs:.1}", gone.title()));
+    costs < 0.0
+}
+
+/// What was found in windows without what is not worth its price there any more.
+pub(crate) fn dropped(stage: &Stage<'_>, plant: &Plant, found: Fit) -> Result<Fit, DiagnoseError> {
+    // What is left that is no noise makes errors larger, and the cost of all that is fitted.
+    let spread = |found: &Fit| found.rms().powi(2).max(1.0);
+    let price = |found: &Fit, h: &Hypothesis| {
+        (h.coordinates.len() - h.held.len()) as f64 * (found.count as f64).ln() + h.burden()
+    };
+    let less = |found: &Fit, member: usize| {
+        let segments = found.segments.iter().map(|s| Segment { columns: None, ..s.clone() }).collect();
+        let less = fit(stage, plant, found.set.without(member), segments, EFFORT)?;
+        let h = &found.set.members[member].0;
+        let costs = (less.cost - found.cost) / spread(found) - price(found, h);
+        Ok(is_better_by(costs, h, stage.work.watch).then_some(less))
+    };
+    without(found, |found| weak(&found.set, &found.covariance, spread(found), |h| price(found, h)), less)
 }
 
 #[cfg(test)]

@@ -320,6 +320,25 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_body_in_the_plane_is_read_about_one_axis_and_one_that_rests_about_all() {
+        let series = |part: &str, values: [f64; 2]| {
+            Series::with_quantum(format!("body.disc.orientation.{part}"), vec![0.0, 0.1], values.to_vec(), 1e-6)
+        };
+        let axes = |vector: [[f64; 2]; 3]| {
+            let all: Vec<Series> = ["x", "y", "z"]
+                .into_iter()
+                .zip(vector)
+                .map(|(p, v)| series(p, v))
+                .chain([series("w", [1.0, 0.9])])
+                .collect();
+            turning(&all.iter().enumerate().collect::<Vec<_>>())
+        };
+        assert_eq!(axes([[0.0; 2], [0.0; 2], [0.1, 0.2]]), [2]);
+        assert_eq!(axes([[0.0; 2], [0.0, -1e-6], [0.1, 0.2]]), [0, 1, 2], "noise about another axis");
+        assert_eq!(axes([[0.0; 2]; 3]), [0, 1, 2], "at rest");
+    }
+
+    #[test]
     fn a_part_of_a_run_keeps_its_commands_and_its_number() {
         let reading = |channel: &str, every: usize| {
             let times: Vec<f64> = (0..=10).step_by(every).map(|i| 0.1 * i as f64).collect();

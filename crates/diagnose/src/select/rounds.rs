@@ -77,7 +77,8 @@ pub(super) fn fit_sets(
             continue;
         }
         let fit = fit_first(problem, now, &set, pool, (many, here));
-        let Ok((same, fit)) = fit.inspect_err(|error| watch.step(&format!("  {}: {error}", added.join("; ")))) else {
+        let fit = fit.inspect_err(|error| watch.step(&format!("  {}: {error}", added.join("; ")))).ok().flatten();
+        let Some((same, fit)) = fit else {
             known.refuted.push(added);
             continue;
         };
@@ -108,14 +109,15 @@ pub(super) fn fit_sets(
     Ok(best_of(problem, worthy, tried, (before, here, many)))
 }
 
-/// A proposal fitted beside a fit, and that on the same intervals where these are others.
+/// A proposal fitted beside a fit, and that on the same intervals where these are others; none where it led astray and is no better from near what changes
+/// nothing either.
 fn fit_first(
     problem: &Problem<'_>,
     now: &Fitted,
     Proposal { members, spread, score, is_again }: &Proposal,
     pool: &Pool,
     (many, here): (usize, f64),
-) -> Result<(Option<Fitted>, Fitted), DiagnoseError> {
+) -> Result<Option<(Option<Fitted>, Fitted)>, DiagnoseError> {
     let begun = Fitted { spread: spread.clone(), ..now.clone() };
     let set = members.iter().fold(now.set.clone(), |all, (m, x)| all.with(pool.of(*m), x));
     let look =
@@ -123,20 +125,20 @@ fn fit_first(
     if *is_again {
         let near = NEAR.into_iter().filter_map(|share| look(set.a_share_of_the_way(&now.set, share)).ok());
         let mut near = near.filter(|(same, fit)| fit.score < same.as_ref().unwrap_or(now).score);
-        return near.next().ok_or_else(|| problem.lost());
+        return Ok(near.next());
     }
     let first = look(set.clone())?;
     let gain = |(same, fit): &(Option<Fitted>, Fitted)| same.as_ref().unwrap_or(now).score - fit.score;
     let is_better = criterion(&first.1, many) < criterion(first.0.as_ref().unwrap_or(now), many);
     if is_better && gain(&first) >= PROMISING * (now.score - score) {
-        return Ok(first);
+        return Ok(Some(first));
     }
     // A law that leads astray may do so for what it holds in reserve.
     let free = set.released().into_iter().filter_map(|free| look(free).ok());
     let better = |best: (_, Fitted), free: (_, Fitted)| {
         if criterion(&free.1, many) < criterion(&best.1, many) { free } else { best }
     };
-    Ok(free.fold(first, better))
+    Ok(Some(free.fold(first, better)))
 }
 
 /// Shares of the way to what is promised from which a fit is tried again that has led astray.
