@@ -112,6 +112,7 @@ fn joints(built: &Built, tapes: &[Tape]) -> Vec<JointFact> {
                 armature: joint.armature,
                 largest_command: largest,
                 travel: travel(tapes, vehicle.v0 + joint.v_index),
+                orders: Vec::new(),
             });
         }
     }

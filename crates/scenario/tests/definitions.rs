@@ -10,7 +10,7 @@ use scenario::spec::Tolerance;
 use spatial::{Mat3, Vec3};
 
 fn joint() -> JointFact {
-    JointFact { name: "hinge".into(), coordinate: 0, armature: 0.2, largest_command: 2.0, travel: 0.0 }
+    JointFact { name: "hinge".into(), coordinate: 0, armature: 0.2, largest_command: 2.0, ..JointFact::default() }
 }
 
 fn actuators() -> [ActuatorFact; 2] {

@@ -51,13 +51,7 @@ mod tests {
     /// A link on a driven joint, a contact and a gyro.
     fn facts() -> Facts {
         Facts {
-            joints: vec![JointFact {
-                name: "hinge".into(),
-                coordinate: 0,
-                armature: 0.0,
-                largest_command: 2.0,
-                travel: 0.0,
-            }],
+            joints: vec![JointFact { name: "hinge".into(), largest_command: 2.0, ..JointFact::default() }],
             bodies: vec![BodyFact {
                 name: "bar".into(),
                 vehicle: 0,

@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn forces_stand_where_they_act() {
-        let joint = JointFact { name: "j".to_owned(), coordinate: 2, armature: 0.0, largest_command: 0.0, travel: 0.0 };
+        let joint = JointFact { name: "j".to_owned(), coordinate: 2, ..JointFact::default() };
         let com = Vec3::new(0.0, 0.5, 0.0);
         let body = BodyFact {
             name: "hull".to_owned(),

@@ -47,13 +47,8 @@ mod tests {
 
     #[test]
     fn forms_of_dry_friction_are_kin_and_other_laws_of_a_joint_are_not() {
-        let joint = |name: &str| JointFact {
-            name: name.to_owned(),
-            coordinate: 0,
-            armature: 0.1,
-            largest_command: 0.0,
-            travel: 0.0,
-        };
+        let joint =
+            |name: &str| JointFact { name: name.to_owned(), coordinate: 0, armature: 0.1, ..JointFact::default() };
         let facts = Facts { joints: vec![joint("a"), joint("b")], duration: 1.0, ..Facts::default() };
         let all = hypotheses(&facts);
         let of = |name: &str, place: &str| {

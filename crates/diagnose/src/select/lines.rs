@@ -123,7 +123,7 @@ fn even(samples: &[(f64, f64)]) -> Option<Series> {
 }
 
 /// Whether an unknown force does more to the readings than the noise of one of them in every interval; what is next to nothing has lines of its own.
-fn is_felt(track: &Track, links: &[Link], force: usize) -> bool {
+pub(super) fn is_felt(track: &Track, links: &[Link], force: usize) -> bool {
     let own =
         |(interval, link): (&Interval, &Link)| interval.force[force].powi(2) * link.f.column(force).norm_squared();
     track.intervals.iter().zip(links).map(own).sum::<f64>() > links.len() as f64

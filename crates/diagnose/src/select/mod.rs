@@ -12,6 +12,7 @@ mod exchange;
 mod kin;
 mod left;
 pub(crate) mod lines;
+mod orders;
 pub mod pool;
 pub mod regression;
 mod rounds;

@@ -7,6 +7,7 @@ use super::gamma_quantile_over_mean;
 use super::kin::alone_of_their_kind;
 use super::left::{Left, is_as_quiet, quieting};
 use super::lines::{lines, say};
+use super::orders::give_orders;
 use super::pool::{Pool, price};
 use super::regression::{Regression, Spoken};
 use super::rounds::{Bounds, PROMISING, fit_sets};
@@ -567,9 +568,14 @@ pub(super) fn names(set: &EffectSet) -> String {
     if found.is_empty() { "nothing".to_owned() } else { found.join("; ") }
 }
 
-/// Hypotheses about a model's own parts, and about what swings in what a fit of it leaves.
+/// Hypotheses about a model's own parts, and about what swings in what a fit of it leaves, over time and over the places of joints.
 pub fn hypotheses_of(problem: &Problem<'_>, now: &Fitted, own: &Facts) -> Result<Vec<Hypothesis>, DiagnoseError> {
-    let facts = Facts { lines: lines(problem, now)?, ..Facts::new(&now.built, problem.stage.tapes).of_parts(own) };
+    let mut facts = Facts { lines: lines(problem, now)?, ..Facts::new(&now.built, problem.stage.tapes).of_parts(own) };
+    give_orders(&mut facts, problem, now);
     say(problem.stage.work.watch, "lines", &facts.lines);
+    for joint in facts.joints.iter().filter(|j| !j.orders.is_empty()) {
+        let list: Vec<String> = joint.orders.iter().map(|n| format!("{n:.3}")).collect();
+        problem.stage.work.watch.step(&format!("waves over the place of {} of order {}", joint.name, list.join(", ")));
+    }
     Ok(crate::catalogue::hypotheses(&facts))
 }

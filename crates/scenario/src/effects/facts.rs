@@ -16,6 +16,8 @@ pub struct JointFact {
     pub largest_command: f64,
     /// How far its readings go, rad or m; zero where nothing reads its place.
     pub travel: f64,
+    /// Orders at which what the model leaves swings over its place, 1/rad or 1/m; none before that was looked at.
+    pub orders: Vec<f64>,
 }
 
 /// An actuator: the drive of a joint, a thruster, or all thrusters together.

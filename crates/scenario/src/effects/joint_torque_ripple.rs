@@ -48,27 +48,32 @@ fn spring(_: &str, x: &[f64]) -> Vec<Alternative> {
 /// Largest order of a wave that may stand for a spring.
 const LONG: f64 = 2.0;
 
-/// Orders at which a ripple is screened.
+/// Orders at which a ripple is screened, whatever the data show.
 const ORDERS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0];
 
-/// Waves that a joint has to go through: one of some phase is much like gravity, an offset and a spring together.
+/// Waves that a joint has to go through, and at which a ripple is screened: one of some phase is much like gravity, an offset and a spring together.
 const WAVES: f64 = 1.5;
 
-/// Of waves that a joint has gone through.
+/// Share of them that what the data show may have, and where a fit may go.
+const FEWER: f64 = 0.5;
+
+/// Of waves that a joint has gone through, and where what is missing swings over its place.
 fn candidates(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
-    let least = if joint.travel > 0.0 { WAVES * std::f64::consts::TAU / joint.travel } else { 0.0 }.clamp(0.5, LARGEST);
+    let waves = |count: f64| if joint.travel > 0.0 { count * std::f64::consts::TAU / joint.travel } else { 0.0 };
+    let [lowest, least] = [FEWER * WAVES, WAVES].map(|count| waves(count).clamp(0.5, LARGEST));
     let coordinates = vec![
         Coordinate::free("amplitude", 0.0),
         Coordinate::free("phase", 0.0),
-        Coordinate::free("order", least.max(1.0)).within([least, LARGEST]),
+        Coordinate::free("order", least.max(1.0)).within([lowest, LARGEST]),
     ];
     let ripple = Candidate::new(joint.place(), coordinates).encoded(Encoding::Phasor);
     let mut orders: Vec<f64> = ORDERS.into_iter().filter(|o| *o >= least).collect();
     if orders.is_empty() {
         orders.push(least);
     }
+    orders.extend(joint.orders.iter().filter(|o| **o >= lowest && **o <= LARGEST));
     vec![ripple.screened_on(2, &orders, &Along::each(0..2, SMALL)).expensive()]
 }
 
 /// Largest order.
-const LARGEST: f64 = 1000.0;
+const LARGEST: f64 = 1e4;
