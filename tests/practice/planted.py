@@ -54,6 +54,7 @@ CASES = {
     "arm-bench/tacho": ['name = "sensor-scale", place = "sensor:joint.joint_2.velocity", scale = 1.03'],
     "arm-bench/dry+payload": ['name = "joint-coulomb-friction", place = "joint:joint_4", c = 0.6', 'name = "payload", place = "link:link_7", mass = 0.25, com = [0.0, 0.02, 0.1]'],
     "arm-bench/viscous+ripple": ['name = "joint-viscous-friction", place = "joint:joint_2", b = 1.2', 'name = "joint-torque-ripple", place = "joint:joint_5", amplitude = 0.2, order = 30, phase = 0.0'],
+    "arm-bench/viscous+few-waves": ['name = "joint-viscous-friction", place = "joint:joint_7", b = 0.12', 'name = "joint-torque-ripple", place = "joint:joint_2", amplitude = 0.6, order = 12, phase = 0.7'],
     "arm-bench/dry+viscous+cable": ['name = "joint-coulomb-friction", place = "joint:joint_3", c = 0.5', 'name = "joint-viscous-friction", place = "joint:joint_3", b = 0.5',
                                     'name = "joint-cable-stiffness", place = "joint:joint_6", k = 0.8, q_rest = -0.3'],
     "dock-impact/offset": [f'name = "contact-geometry-offset", place = "{DROGUE}", offset = [0.0, 0.003, -0.002]'],

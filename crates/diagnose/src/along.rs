@@ -83,8 +83,11 @@ fn beginning(problem: &Problem<'_>, nominal: &Fitted, known: &EffectSet) -> Resu
 /// The runs that are searched along: of many an even selection, by how many steps of a body they take.
 fn spokesmen(stage: &Stage<'_>, plant: &Plant) -> Result<Vec<usize>, DiagnoseError> {
     let all: Vec<usize> = (0..stage.tapes.len()).filter(|r| stage.tapes[*r].role == Role::Fit).collect();
-    let bodies = plant.build(&[])?.model.owners.len() as f64;
-    let steps = |run: &usize| (stage.tapes[*run].span.1 - stage.tapes[*run].span.0) / stage.pace.step;
+    let built = plant.build(&[])?;
+    let bodies = built.model.owners.len() as f64;
+    // Stops of joints are passed now and then; touches may last.
+    let step = if pace::touches(&built) { stage.pace.step } else { stage.pace.free };
+    let steps = |run: &usize| (stage.tapes[*run].span.1 - stage.tapes[*run].span.0) / step;
     let share = SEARCHED / (bodies * all.iter().map(steps).sum::<f64>());
     let count = ((share * all.len() as f64) as usize).max(FEWEST);
     let chosen: Vec<usize> = excerpts::evenly(all.len(), count).into_iter().map(|i| all[i]).collect();

@@ -61,7 +61,7 @@ pub(crate) fn seek(
         let here = locate(stage, plant, now, pushed)?;
         let spans: Vec<(usize, Span)> = now.segments.iter().map(|s| (s.run, s.span)).collect();
         let facts = Facts { lines: waves(&here, &spans, window), ..own };
-        say(stage.work.watch, "waves", &facts.lines);
+        say(stage.work.watch, "waves", &facts.lines, " Hz");
         let all = hypotheses(&facts);
         // Numbers that may be off by a tolerance take a force on as far as they can.
         let is_unique = plant.scenario.tolerance.is_exact();

@@ -11,7 +11,7 @@
 use crate::fit::pseudo_inverse;
 use crate::locate::{Located, WindowForce};
 use crate::replay::Span;
-use crate::select::lines::told_apart;
+use crate::select::lines::{standing_out, told_apart};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -49,7 +49,8 @@ pub(crate) fn waves(located: &Located, windows: &[(usize, Span)], window: f64) -
             let told: Vec<Vec<Told<'_>>> = runs.iter().map(|run| told(located, windows, (*run, place))).collect();
             let score = |f: &f64| told.iter().map(|run| gain(run, *f, window)).sum::<f64>();
             let power: Vec<f64> = grid.par_iter().map(score).collect();
-            peaks_of(&grid, &power)
+            // Where samples are missing at a beat, a wave has lesser ones beside it.
+            standing_out(&grid, &power, SURROUNDINGS * BY_BIN as usize / 2, LOUD)
         })
         .collect();
     peaks.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -105,19 +106,6 @@ fn parts_of(span: Span, f: f64, window: f64) -> [Vector3<f64>; 2] {
     }
     let inverse = gram.try_inverse().unwrap_or_else(Matrix3::zeros);
     of.map(|x| inverse * x)
-}
-
-/// Peaks of a periodogram that stand out of their surroundings, and what they take: where samples are missing at a beat, a wave has lesser ones beside it.
-fn peaks_of(grid: &[f64], power: &[f64]) -> Vec<(f64, f64)> {
-    let around = SURROUNDINGS * BY_BIN as usize / 2;
-    let height = |i: usize| {
-        let mut near: Vec<f64> = power[i.saturating_sub(around)..(i + around).min(power.len())].to_vec();
-        near.sort_by(f64::total_cmp);
-        power[i] / near[near.len() / 2].max(f64::MIN_POSITIVE)
-    };
-    let is_peak = |i: &usize| power[*i] > power[*i - 1] && power[*i] >= power[*i + 1];
-    let inner = 1..power.len().saturating_sub(1).max(1);
-    inner.filter(is_peak).filter(|i| height(*i) > LOUD).map(|i| (grid[i], power[i])).collect()
 }
 
 #[cfg(test)]

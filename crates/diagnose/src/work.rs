@@ -25,6 +25,7 @@ pub struct Work<'a> {
     microseconds: AtomicU64,
     evaluations: AtomicU64,
     limit: u64,
+    prepared: AtomicU64,
     was_ended: AtomicBool,
     /// Who hears of it.
     pub watch: &'a dyn Watch,
@@ -73,6 +74,7 @@ impl<'a> Work<'a> {
             microseconds: AtomicU64::new(0),
             evaluations: AtomicU64::new(0),
             limit: (effort * USUAL) as u64,
+            prepared: AtomicU64::new(0),
             was_ended: AtomicBool::new(false),
             watch,
         }
@@ -97,9 +99,15 @@ impl<'a> Work<'a> {
         }
     }
 
+    /// What was done so far was to begin with: a search has its whole limit still, however short the steps are that a recording asks for.
+    pub(crate) fn is_prepared(&self) {
+        self.prepared.store(self.total().evaluations, Ordering::Relaxed);
+    }
+
     /// Whether so much was done that what would be begun now is left; that it was is remembered.
     pub(crate) fn is_spent(&self, until: Until) -> bool {
-        let is_spent = self.total().evaluations as f64 > until.share() * self.limit as f64;
+        let done = self.total().evaluations - self.prepared.load(Ordering::Relaxed);
+        let is_spent = done as f64 > until.share() * self.limit as f64;
         self.was_ended.fetch_or(is_spent, Ordering::Relaxed);
         is_spent
     }
@@ -141,6 +149,8 @@ mod tests {
         assert_eq!(work.total(), Total { replays: 2, simulated: 0.75, evaluations: 335 });
         work.add(0.0, 1, &of(101, 0));
         assert!(work.is_spent(Until::Fit));
+        work.is_prepared();
+        assert!(!work.is_spent(Until::Search));
         let anew = work.anew();
         assert!(!anew.is_spent(Until::Search) && anew.limit == work.limit && anew.total().evaluations == 0);
     }

@@ -66,7 +66,19 @@ pub fn lines(problem: &Problem<'_>, now: &Fitted) -> Result<Vec<f64>, DiagnoseEr
     Ok(told_apart(peaks.into_iter().map(|p| p.frequency), longest, MOST))
 }
 
-/// The first frequencies, at most so many, that a run of some length tells apart, Hz.
+/// Points of a spectrum on a grid that are higher than their neighbours and `loud` times the median of so many points around them, and how high they are.
+pub(crate) fn standing_out(grid: &[f64], power: &[f64], around: usize, loud: f64) -> Vec<(f64, f64)> {
+    let height = |i: usize| {
+        let mut near: Vec<f64> = power[i.saturating_sub(around)..(i + around).min(power.len())].to_vec();
+        near.sort_by(f64::total_cmp);
+        power[i] / near[near.len() / 2].max(f64::MIN_POSITIVE)
+    };
+    let is_peak = |i: &usize| power[*i] > power[*i - 1] && power[*i] >= power[*i + 1];
+    let inner = 1..power.len().saturating_sub(1).max(1);
+    inner.filter(is_peak).filter(|i| height(*i) > loud).map(|i| (grid[i], power[i])).collect()
+}
+
+/// The first frequencies, at most so many, that a run of some length tells apart, Hz; or orders that a travel does, in turns.
 pub(crate) fn told_apart(all: impl Iterator<Item = f64>, longest: f64, most: usize) -> Vec<f64> {
     let mut found: Vec<f64> = Vec::new();
     for frequency in all {
@@ -77,10 +89,10 @@ pub(crate) fn told_apart(all: impl Iterator<Item = f64>, longest: f64, most: usi
     found
 }
 
-/// Says at which frequencies there is something.
-pub(crate) fn say(watch: &dyn Watch, what: &str, frequencies: &[f64]) {
-    if !frequencies.is_empty() {
-        let list: Vec<String> = frequencies.iter().map(|f| format!("{f:.4} Hz")).collect();
+/// Says at which frequencies or orders there is something, with their unit.
+pub(crate) fn say(watch: &dyn Watch, what: &str, found: &[f64], unit: &str) {
+    if !found.is_empty() {
+        let list: Vec<String> = found.iter().map(|f| format!("{f:.4}{unit}")).collect();
         watch.step(&format!("{what} at {}", list.join(", ")));
     }
 }

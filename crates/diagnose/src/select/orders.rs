@@ -7,12 +7,12 @@
 //!
 //! has peaks that stand out of their surroundings. What swings within an interval of the missing force is not seen in it.
 
-use super::lines::is_felt;
+use super::lines::{is_felt, standing_out, told_apart};
 use crate::facts::Facts;
 use crate::identify::fit::{Fitted, Problem};
-use crate::identify::track::Track;
+use crate::identify::track::{Interval, Track};
 use crate::reading::{Reading, Value};
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
 use rayon::prelude::*;
 use scenario::measure::Quantity;
 use std::f64::consts::TAU;
@@ -51,7 +51,7 @@ pub fn give_orders(facts: &mut Facts, problem: &Problem<'_>, now: &Fitted) {
 
 /// Where a joint was in the middle of every interval, and the force there.
 fn samples(track: &Track, places: &Reading, force: usize) -> Vec<Sample> {
-    let of = |interval: &crate::identify::track::Interval| {
+    let of = |interval: &Interval| {
         let middle = 0.5 * (interval.span.from + interval.span.to);
         let after = places.times.partition_point(|t| *t < middle);
         let place = |k: usize| places.values.get(k).map(Value::scalar).filter(|x| x.is_finite());
@@ -72,32 +72,18 @@ fn orders(runs: &[Vec<Sample>]) -> Vec<f64> {
         return Vec::new();
     };
     let apart = TAU / travel;
-    // Half a wave in a step of the faster ones is the last that they show.
+    // Half a wave in a step of the faster ones is the last that they show. Before the first point there is none, so that it may be a peak.
     let count = ((0.5 * TAU / fastest / apart - WAVES) * BY_ORDER).clamp(0.0, LONGEST as f64) as usize;
-    let grid: Vec<f64> = (0..count).map(|k| (WAVES + k as f64 / BY_ORDER) * apart).collect();
+    let waves: Vec<f64> = (0..=count).map(|k| WAVES + (k as f64 - 1.0) / BY_ORDER).collect();
     let centred: Vec<Sample> = all.iter().map(|(q, f)| ((q - low) / travel - 0.5, *f)).collect();
-    let power: Vec<f64> = grid.par_iter().map(|n| taken(&centred, n * travel)).collect();
-    let around = (SURROUNDINGS * BY_ORDER) as usize;
-    let height = |i: usize| {
-        let mut near = power[i.saturating_sub(around)..(i + around).min(power.len())].to_vec();
-        near.sort_by(f64::total_cmp);
-        power[i] / near[near.len() / 2].max(f64::MIN_POSITIVE)
-    };
-    let inner = 0..power.len();
-    let is_peak = |i: &usize| {
-        let before = i.checked_sub(1).map_or(0.0, |k| power[k]);
-        power[*i] > before && power[*i] >= power.get(i + 1).copied().unwrap_or(f64::INFINITY)
-    };
-    let mut peaks: Vec<(f64, f64)> =
-        inner.filter(is_peak).filter(|i| height(*i) > LOUD).map(|i| (grid[i], power[i])).collect();
+    let line = taken_by_line(&centred);
+    let taken = |n: &f64| (taken_with_wave(&centred, TAU * n) - line).max(0.0);
+    let mut power: Vec<f64> = waves.par_iter().map(taken).collect();
+    power[0] = 0.0;
+    let mut peaks = standing_out(&waves, &power, (SURROUNDINGS * BY_ORDER) as usize, LOUD);
     peaks.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut found: Vec<f64> = Vec::new();
-    for (order, _) in peaks {
-        if found.len() < MOST && found.iter().all(|known| (known - order).abs() > 2.0 * apart) {
-            found.push(order);
-        }
-    }
-    found
+    // Within twice what the travel tells apart is the foot of a peak.
+    told_apart(peaks.into_iter().map(|p| p.0 * apart), 0.5 / apart, MOST)
 }
 
 /// How far a joint goes from one sample to the next, as nine of ten do not exceed.
@@ -107,8 +93,19 @@ fn step(runs: &[Vec<Sample>]) -> Option<f64> {
     steps.get(steps.len() * 9 / 10).copied()
 }
 
-/// What a wave takes of the squares of some forces beyond a line, waves by travel.
-fn taken(samples: &[Sample], order: f64) -> f64 {
+/// What a line takes of the squares of some forces.
+fn taken_by_line(samples: &[Sample]) -> f64 {
+    let (mut a, mut b) = (Matrix2::zeros(), Vector2::zeros());
+    for (q, f) in samples {
+        let row = Vector2::new(1.0, *q);
+        a += row * row.transpose();
+        b += row * *f;
+    }
+    a.try_inverse().map_or(0.0, |inverse| b.dot(&(inverse * b)))
+}
+
+/// What a line and a wave take of them.
+fn taken_with_wave(samples: &[Sample], order: f64) -> f64 {
     let (mut a, mut b) = (Matrix4::zeros(), Vector4::zeros());
     for (q, f) in samples {
         let (sine, cosine) = (order * q).sin_cos();
@@ -116,13 +113,7 @@ fn taken(samples: &[Sample], order: f64) -> f64 {
         a += row * row.transpose();
         b += row * *f;
     }
-    let line = a.fixed_view::<2, 2>(0, 0).into_owned().try_inverse();
-    let of_line = line.map_or(0.0, |inverse| {
-        let own = b.fixed_rows::<2>(0);
-        own.dot(&(inverse * own))
-    });
-    let of_all = a.try_inverse().map_or(0.0, |inverse| b.dot(&(inverse * b)));
-    (of_all - of_line).max(0.0)
+    a.try_inverse().map_or(0.0, |inverse| b.dot(&(inverse * b)))
 }
 
 #[cfg(test)]

@@ -572,10 +572,10 @@ pub(super) fn names(set: &EffectSet) -> String {
 pub fn hypotheses_of(problem: &Problem<'_>, now: &Fitted, own: &Facts) -> Result<Vec<Hypothesis>, DiagnoseError> {
     let mut facts = Facts { lines: lines(problem, now)?, ..Facts::new(&now.built, problem.stage.tapes).of_parts(own) };
     give_orders(&mut facts, problem, now);
-    say(problem.stage.work.watch, "lines", &facts.lines);
-    for joint in facts.joints.iter().filter(|j| !j.orders.is_empty()) {
-        let list: Vec<String> = joint.orders.iter().map(|n| format!("{n:.3}")).collect();
-        problem.stage.work.watch.step(&format!("waves over the place of {} of order {}", joint.name, list.join(", ")));
+    let watch = problem.stage.work.watch;
+    say(watch, "lines", &facts.lines, " Hz");
+    for joint in &facts.joints {
+        say(watch, &format!("orders over the place of {}", joint.name), &joint.orders, "");
     }
     Ok(crate::catalogue::hypotheses(&facts))
 }

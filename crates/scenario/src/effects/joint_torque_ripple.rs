@@ -51,16 +51,14 @@ const LONG: f64 = 2.0;
 /// Orders at which a ripple is screened, whatever the data show.
 const ORDERS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0];
 
-/// Waves that a joint has to go through, and at which a ripple is screened: one of some phase is much like gravity, an offset and a spring together.
-const WAVES: f64 = 1.5;
-
-/// Share of them that what the data show may have, and where a fit may go.
-const FEWER: f64 = 0.5;
+/// Waves that a joint has to go through: what the data show, and where a fit may go, and what is screened whatever they show. One of some phase is much
+/// like gravity, an offset and a spring together.
+const WAVES: [f64; 2] = [0.75, 1.5];
 
 /// Of waves that a joint has gone through, and where what is missing swings over its place.
 fn candidates(joint: &JointFact, _: &Survey<'_>) -> Vec<Candidate> {
     let waves = |count: f64| if joint.travel > 0.0 { count * std::f64::consts::TAU / joint.travel } else { 0.0 };
-    let [lowest, least] = [FEWER * WAVES, WAVES].map(|count| waves(count).clamp(0.5, LARGEST));
+    let [lowest, least] = WAVES.map(|count| waves(count).clamp(0.5, LARGEST));
     let coordinates = vec![
         Coordinate::free("amplitude", 0.0),
         Coordinate::free("phase", 0.0),

@@ -189,9 +189,14 @@ impl Coordinate {
         loss
     }
 
+    /// How far it is beyond its range, where its stop pushes it back, rad or m.
+    pub(crate) fn depth_at_stop(&self, q: f64) -> f64 {
+        self.limits.map_or(0.0, |[lower, upper]| (lower - q).max(q - upper).max(0.0))
+    }
+
     /// Energy in its stop and in the bristle of its dry friction, J.
     pub(crate) fn calc_energy(&self, q: f64, dry: f64) -> f64 {
-        let depth = self.limits.map_or(0.0, |[lower, upper]| (lower - q).max(q - upper).max(0.0));
+        let depth = self.depth_at_stop(q);
         let bristle = self.dry.as_ref().map_or(0.0, |law| law.stiffness);
         0.5 * (self.stop_stiffness * depth * depth + bristle * dry * dry)
     }

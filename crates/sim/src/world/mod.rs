@@ -207,13 +207,13 @@ impl World {
         }
     }
 
-    /// Advances by one step of `h` s if nothing touches in it; else leaves the world as it was and says `false`.
+    /// Advances by one step of `h` s if nothing touches in it and no joint leans on its stop; else leaves the world as it was and says `false`.
     ///
     /// What flies freely bears longer steps than what touches: a caller tries a long one, and makes short ones where it fails.
     pub fn advance_free(&mut self, h: f64) -> Result<bool, StepError> {
-        if self.ws.touches.is_empty() {
+        if self.ws.touches.is_empty() && !self.leans() {
             self.advance_by(h)?;
-            if self.ws.touches.is_empty() {
+            if self.ws.touches.is_empty() && !self.leans() {
                 return Ok(true);
             }
             self.ws.touches.clear();
@@ -261,6 +261,11 @@ impl World {
         }
         self.update();
         Ok(true)
+    }
+
+    /// Whether a joint is beyond its range, where its stop, which is stiff, pushes it back.
+    fn leans(&self) -> bool {
+        self.model.coordinates.iter().zip(&self.state.q).any(|(c, q)| c.depth_at_stop(*q) > 0.0)
     }
 
     /// Back to where the last step began.
