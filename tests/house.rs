@@ -25,7 +25,7 @@ const SIM: [&str; 10] =
     ["error", "parts", "model", "state", "workspace", "forces", "books", "solve", "schemes", "world"];
 
 /// Crates some of whose top-level modules still use each other in circles, with how many do; none may be added.
-const IN_CIRCLES: [(&str, usize); 3] = [("contact", 10), ("scenario", 9), ("diagnose", 33)];
+const IN_CIRCLES: [(&str, usize); 3] = [("contact", 10), ("scenario", 9), ("diagnose", 29)];
 
 /// The wall.
 const LONGEST_FILE: usize = 600;

@@ -18,9 +18,9 @@ use crate::plant::Plant;
 use crate::replay::Span;
 use crate::select::pool::price;
 use crate::select::search::{
-    Found, NEXT_TO_NOTHING, Remainder, criterion, hypotheses_of, remainder, search, to_the_end,
+    Found, NEXT_TO_NOTHING, Remainder, criterion, hypotheses_of, names, remainder, search, to_the_end,
 };
-use crate::tell::near_the_best;
+use crate::ties::near_the_best;
 use record::Role;
 use scenario::spec::Tolerance;
 use std::cmp::Ordering;
@@ -42,11 +42,11 @@ const LAST: Reach = Reach { iterations: 4, reuse: false };
 /// Iterations with the nominal numbers free within their tolerances.
 const WITHIN: Reach = Reach { iterations: 6, reuse: true };
 
-/// Searches along the runs that may be fitted, from a set that was found otherwise, or from none.
+/// Searches along the runs that may be fitted, from the likeliest there of some sets that were found otherwise, or from none.
 pub(crate) fn seek(
     stage: &Stage<'_>,
     plant: &Plant,
-    (own, known): (&Facts, &EffectSet),
+    (own, known): (&Facts, &[EffectSet]),
 ) -> Result<Course, DiagnoseError> {
     let problem = Problem { runs: spokesmen(stage, plant)?, ..problem(stage, plant, own, Role::Fit) };
     let mut nominal = problem.begin()?;
@@ -60,7 +60,12 @@ pub(crate) fn seek(
     let hypotheses = |now: &Fitted| hypotheses_of(&problem, now, own);
     let usual = || catalogue::within(&Facts::new(&nominal.built, stage.tapes), &USUAL);
     let numbers = plant.scenario.tolerance.is_exact().then(usual);
-    let begun = (!known.members.is_empty()).then(|| beginning(&problem, &nominal, known)).transpose()?;
+    let begun: Vec<Fitted> = known.iter().map(|set| beginning(&problem, &nominal, set)).collect::<Result<_, _>>()?;
+    let begun = begun.into_iter().min_by(|a, b| a.score.total_cmp(&b.score));
+    // What they took is not taken from what may be found.
+    if begun.is_some() {
+        stage.work.is_prepared();
+    }
     let (mut found, searched) = search(&problem, (nominal, begun), &hypotheses, numbers)?;
     let heard = problem.clone().heard_by(&found.best.set)?;
     if let Some(best) = heard.reheard(&searched, &found.best)? {
@@ -76,7 +81,7 @@ fn beginning(problem: &Problem<'_>, nominal: &Fitted, known: &EffectSet) -> Resu
     let own = problem.begin_with(known)?;
     let begun = to_the_end(problem, problem.fit(&own, known.clone(), WITHIN)?);
     let [before, after] = [nominal.score, begun.score];
-    problem.stage.work.watch.step(&format!("with what is known: −2 log L {before:.1} → {after:.1}"));
+    problem.stage.work.watch.step(&format!("with {}: −2 log L {before:.1} → {after:.1}", names(known)));
     Ok(begun)
 }
 
@@ -320,6 +325,7 @@ pub(crate) fn attempts(course: &Course) -> Vec<Attempt> {
                 together: None,
                 kept: false,
                 found: score.start.clone(),
+                set: EffectSet::default(),
                 shown: score.shown.clone(),
             });
         }
@@ -351,6 +357,7 @@ pub(crate) fn attempts(course: &Course) -> Vec<Attempt> {
                 together: (tried.added.len() > 1 && is_kept && is_whole).then_some(gain),
                 kept: is_kept && is_whole,
                 found: x.clone(),
+                set: EffectSet::default(),
                 shown,
             });
         }

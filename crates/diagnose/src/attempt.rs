@@ -1,5 +1,6 @@
 //! What was tried, and what came of it: what the report tells of the search.
 
+use crate::effect_set::EffectSet;
 use crate::fit::Fit;
 use crate::hypothesis::Hypothesis;
 use crate::screen::{Score, Shown};
@@ -30,6 +31,8 @@ pub struct Attempt {
     pub kept: bool,
     /// Coordinates after the refit.
     pub found: Vec<f64>,
+    /// The set that it was refitted in; empty where none was.
+    pub set: EffectSet,
     /// How well the data show it.
     pub shown: Shown,
 }
@@ -72,6 +75,7 @@ impl Attempt {
             together: None,
             kept: false,
             found: score.start.clone(),
+            set: EffectSet::default(),
             shown: score.shown.clone(),
         }
     }
@@ -82,5 +86,6 @@ impl Attempt {
         self.share = ((before.cost - after.cost) / before.excess().max(0.2 * before.noise)).clamp(0.0, 1.0);
         self.gain = Some(criterion(before) - criterion(after));
         self.found = after.set.members.last().map(|m| m.1.clone()).unwrap_or_default();
+        self.set = after.set.clone();
     }
 }

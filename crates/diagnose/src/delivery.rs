@@ -58,7 +58,7 @@ pub(crate) fn sought_along(
     stage: &Stage<'_>,
     plant: &Plant,
     (own, window): (&Facts, f64),
-    known: &EffectSet,
+    known: &[EffectSet],
 ) -> Result<Result<Course, Raised>, DiagnoseError> {
     if let Some(raised) = missing_beyond_limits(stage, plant, own)? {
         return Ok(Err(raised));

@@ -79,7 +79,7 @@ fn found_in(
     }
     let Some((tapes, pace)) = flown(stage, (&free, &built), (flights, own, window))? else { return Ok(None) };
     let flying = Stage { tapes: &tapes, pace, ..*stage };
-    let course = along::seek(&flying, &free, (own, &EffectSet::default()))?;
+    let course = along::seek(&flying, &free, (own, &[]))?;
     let course = along::told_by_all_runs(&flying, &free, own, course)?;
     let [before, after] = course.left;
     let best = &course.found.best.set;

@@ -66,6 +66,7 @@ mod summary;
 pub mod synthetic;
 pub mod tape;
 mod tell;
+mod ties;
 mod together;
 mod uncertainty;
 mod unheard;

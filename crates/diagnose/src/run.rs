@@ -38,6 +38,7 @@ use crate::standing::{Standing, fit_in_turns, follow_with};
 use crate::stretches::{cut, joined};
 use crate::tape::{Tape, load};
 use crate::tell;
+use crate::ties;
 use crate::uncertainty::{self, Uncertainty};
 use crate::unheard;
 use crate::work::{Until, Watch, Work};
@@ -97,7 +98,7 @@ pub fn diagnose_with(
         return diagnose_in_windows(scenario, set, &Work::new(watch, effort), true);
     }
     // Where runs as a whole leave far more than noise windows are asked as well.
-    if let Some(whole) = along_whole_runs(&scenario, (set, &EffectSet::default()), &Work::new(watch, ALONG * effort)) {
+    if let Some(whole) = along_whole_runs(&scenario, (set, &[]), &Work::new(watch, ALONG * effort)) {
         if is_near_noise(&whole.0) || !shows_in_windows(&whole.0) {
             return Ok(whole);
         }
@@ -113,7 +114,7 @@ pub fn diagnose_with(
 /// What whole runs say, from what is known already; none where they cannot be followed.
 fn along_whole_runs(
     scenario: &Scenario,
-    (set, known): (&RecordingSet, &EffectSet),
+    (set, known): (&RecordingSet, &[EffectSet]),
     work: &Work<'_>,
 ) -> Option<(Diagnosis, Evidence)> {
     let found = diagnose_whole(scenario.clone(), (set, known), work);
@@ -137,9 +138,14 @@ fn diagnose_in_windows(
     if or_whole && !found.0.verdict.is_good() {
         watch.step("windows leave something: along whole runs");
         // Far beyond noise windows are as good: what the laws do not have is in both.
-        let known = if found.0.verdict.is_found() { known } else { EffectSet::default() };
+        let known = if found.0.verdict.is_found() { known } else { Vec::new() };
         let whole = along_whole_runs(&scenario, (set, &known), &work.anew_times(ALONG));
-        if let Some(whole) = whole.filter(|whole| whole.0.verdict.is_good()) {
+        // What windows cannot tell apart whole runs do.
+        let is_tied = known.len() > 1;
+        let is_better = |w: &Diagnosis| is_clearly_better(w, &found.0) || is_tied && !is_clearly_better(&found.0, w);
+        if let Some(mut whole) = whole.filter(|w| w.0.verdict.is_good() || is_better(&w.0)) {
+            let said = ties::said_of(&known, &whole.0);
+            whole.0.remarks.extend(said);
             return Ok(whole);
         }
     }
@@ -223,13 +229,13 @@ fn prepare<'w>(
     Ok(Prepared { plant, inspection, begun, clock })
 }
 
-/// The same in so many windows of the longest run, and what was found as it was fitted.
+/// The same in so many windows of the longest run; and what was found as it was fitted, with what is as good beside what either leaves.
 fn diagnose_in(
     scenario: Scenario,
     set: &RecordingSet,
     work: &Work<'_>,
     parts: f64,
-) -> Result<((Diagnosis, Evidence), EffectSet), DiagnoseError> {
+) -> Result<((Diagnosis, Evidence), Vec<EffectSet>), DiagnoseError> {
     let Prepared { plant, inspection, begun, mut clock } = prepare(scenario, set, work, Way::Windows(parts))?;
     let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } = begun;
     let pace = discretisation.pace;
@@ -260,6 +266,7 @@ fn diagnose_in(
     rivals.retain(|(title, _)| found.set.findings().any(|(h, _)| h.title() == *title));
     let remains = if found.is_significant() { found.excess() } else { 0.0 };
     rivals.extend(tell::rivals_by_round(&attempts, &found.set, remains));
+    let known = std::iter::once(found.set.clone()).chain(ties::tied(&attempts, remains)).collect();
     clock.stage("write", 1.0);
     let findings = Findings {
         title: set.title.clone(),
@@ -280,13 +287,13 @@ fn diagnose_in(
         discretisation,
     };
     let told = tell::tell(&findings, &stage, &inspection, &plant.scenario, &set.folder);
-    Ok((told, findings.found.set))
+    Ok((told, known))
 }
 
 /// The same along whole runs.
 fn diagnose_whole(
     scenario: Scenario,
-    (set, known): (&RecordingSet, &EffectSet),
+    (set, known): (&RecordingSet, &[EffectSet]),
     work: &Work<'_>,
 ) -> Result<(Diagnosis, Evidence), DiagnoseError> {
     let Prepared { plant, inspection, begun, mut clock } = prepare(scenario, set, work, Way::Runs)?;
@@ -348,7 +355,7 @@ fn diagnose_whole(
 /// The same of a scenario whose limits were raised.
 fn diagnose_raised(
     (scenario, words): Raised,
-    known: (&RecordingSet, &EffectSet),
+    known: (&RecordingSet, &[EffectSet]),
     work: &Work<'_>,
 ) -> Result<(Diagnosis, Evidence), DiagnoseError> {
     words.iter().for_each(|w| work.watch.step(w));

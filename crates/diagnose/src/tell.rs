@@ -13,6 +13,7 @@ use crate::hypothesis::Hypothesis as Member;
 use crate::linear::{Segment, Stage};
 use crate::run::Findings;
 use crate::share;
+use crate::ties::near_the_best;
 use crate::vocabulary::unit;
 use nalgebra::DMatrix;
 use record::inspect::Inspection;
@@ -231,12 +232,6 @@ pub(crate) fn rivals_by_round(attempts: &[Attempt], set: &EffectSet, left: f64) 
             .collect()
     };
     set.findings().flat_map(|(h, _)| of(h)).collect()
-}
-
-/// Difference of the information criterion up to which another explanation is told, of one that gains so much and leaves so much beyond noise: what is left
-/// may stand for the wrong one of two as well as for the right one, where noise alone is left ten decide (Kass and Raftery 1995).
-pub(crate) fn near_the_best(gain: f64, left: f64) -> f64 {
-    (0.05 * gain.min(left)).max(10.0)
 }
 
 fn located(findings: &Findings, stage: &Stage<'_>, features: &Features) -> Vec<LocatedPlace> {

@@ -563,7 +563,7 @@ fn simplified(
 }
 
 /// Members in a line.
-pub(super) fn names(set: &EffectSet) -> String {
+pub(crate) fn names(set: &EffectSet) -> String {
     let found: Vec<String> = set.findings().map(|(h, x)| format!("{} ({})", h.title(), told(h, x))).collect();
     if found.is_empty() { "nothing".to_owned() } else { found.join("; ") }
 }

@@ -1,0 +1,46 @@
+//! Sets that windows cannot tell apart: what both leave is far beyond noise, and by how much the one leaves less is no more than what neither of them has.
+//!
+//! A cell's compliance and a contact's are springs in series, and a loop that is measured between them shows their sum. Which of the two it is shows in how
+//! whole runs go on, where what is missing is a force that may act at any time, not noise.
+
+use crate::attempt::Attempt;
+use crate::diagnosis::Diagnosis;
+use crate::effect_set::EffectSet;
+use crate::hypothesis::Hypothesis;
+use crate::vocabulary::plain_name;
+use crate::words::place_words;
+
+/// The set that came nearest to the one that was chosen in the last round, of those that are told as its rivals. `left`: what that leaves beyond noise.
+pub(crate) fn tied(attempts: &[Attempt], left: f64) -> Option<EffectSet> {
+    let own = attempts.iter().filter(|a| a.kept).max_by_key(|a| a.round)?;
+    let gain = own.together.or(own.gain)?;
+    let same_round = attempts.iter().filter(|a| a.round == own.round && !a.kept && !a.set.members.is_empty());
+    let gap = |a: &&Attempt| a.gain.map_or(f64::INFINITY, |g| (gain - g).abs());
+    let nearest = same_round.min_by(|a, b| gap(a).total_cmp(&gap(b)))?;
+    (gap(&nearest) < near_the_best(gain, left)).then(|| nearest.set.clone())
+}
+
+/// Which of some tied sets whole runs took, in words; none where they took neither or there is but one.
+pub(crate) fn said_of(tied: &[EffectSet], found: &Diagnosis) -> Option<String> {
+    let own = |a: &EffectSet, b: &EffectSet| a.findings().find(|(h, _)| !b.has_finding(h)).map(|(h, _)| h.clone());
+    let [one, other] = tied else { return None };
+    let [one, other] = [own(one, other)?, own(other, one)?];
+    let is_taken = |h: &Hypothesis| found.effects.iter().any(|e| e.name == h.name && e.place == h.place);
+    let (taken, left) = match (is_taken(&one), is_taken(&other)) {
+        (true, false) => (one, other),
+        (false, true) => (other, one),
+        _ => return None,
+    };
+    let words = |h: &Hypothesis| format!("{} at {}", plain_name(h.name), place_words(&h.place));
+    Some(format!(
+        "Windows cannot tell {} from {}: both leave far more than noise, and nearly as much. Along whole runs the former is likelier.",
+        words(&taken),
+        words(&left)
+    ))
+}
+
+/// Difference of the information criterion up to which another explanation is told, of one that gains so much and leaves so much beyond noise: what is left
+/// may stand for the wrong one of two as well as for the right one, where noise alone is left ten decide (Kass and Raftery 1995).
+pub(crate) fn near_the_best(gain: f64, left: f64) -> f64 {
+    (0.05 * gain.min(left)).max(10.0)
+}
