@@ -48,6 +48,7 @@ CASES = {
     "arm-bench/joint-lag": ['name = "actuator-lag", place = "joint:joint_3", time_constant = 0.008'],
     "arm-bench/joint-pump": ['name = "periodic-disturbance", place = "joint:joint_2", amplitude = 0.5, frequency = 6.3, phase = 0.4'],
     "arm-bench/joint-coulomb-7": ['name = "joint-coulomb-friction", place = "joint:joint_7", c = 0.25'],
+    "arm-bench/soft-gear+dry": ['name = "joint-elasticity", place = "joint:joint_4", k = 900.0, d = 2.0', 'name = "joint-coulomb-friction", place = "joint:joint_6", c = 0.3'],
     "arm-bench/joint-elastic-6": ['name = "joint-elasticity", place = "joint:joint_6", k = 900.0, d = 0.8'],
     "arm-bench/body-mass": ['name = "body-mass", place = "body:link_5", mass = 2.05'],
     "arm-bench/bias": ['name = "sensor-bias", place = "sensor:joint.joint_3.position", bias = 0.004'],

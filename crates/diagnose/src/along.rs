@@ -363,6 +363,10 @@ pub(crate) fn attempts(course: &Course) -> Vec<Attempt> {
         }
     }
     keep_what_is_left_of_sets(&mut attempts, course);
+    // What an earlier round had tried of it was not taken then.
+    let taken: Vec<(String, usize)> = attempts.iter().filter(|a| a.kept).map(|a| (a.title(), a.round)).collect();
+    let is_last = |a: &Attempt| !taken.iter().any(|(title, round)| *title == a.title() && *round > a.round);
+    attempts.retain(is_last);
     attempts
 }
 
