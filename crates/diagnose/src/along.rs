@@ -363,11 +363,14 @@ pub(crate) fn attempts(course: &Course) -> Vec<Attempt> {
         }
     }
     keep_what_is_left_of_sets(&mut attempts, course);
-    // What an earlier round had tried of it was not taken then.
-    let taken: Vec<(String, usize)> = attempts.iter().filter(|a| a.kept).map(|a| (a.title(), a.round)).collect();
-    let is_last = |a: &Attempt| !taken.iter().any(|(title, round)| *title == a.title() && *round > a.round);
-    attempts.retain(is_last);
+    keep_what_was_taken(&mut attempts);
     attempts
+}
+
+/// What an earlier round had tried of a kept effect was not taken then.
+fn keep_what_was_taken(attempts: &mut Vec<Attempt>) {
+    let taken: Vec<(String, usize)> = attempts.iter().filter(|a| a.kept).map(|a| (a.title(), a.round)).collect();
+    attempts.retain(|a| !taken.iter().any(|(title, round)| *title == a.title() && *round > a.round));
 }
 
 /// What was fitted beside others that were of no use is kept, and what these brought was its own.
