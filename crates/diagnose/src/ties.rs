@@ -44,3 +44,49 @@ pub(crate) fn said_of(tied: &[EffectSet], found: &Diagnosis) -> Option<String> {
 pub(crate) fn near_the_best(gain: f64, left: f64) -> f64 {
     (0.05 * gain.min(left)).max(10.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue;
+    use crate::facts::Facts;
+    use crate::screen::Shown;
+
+    fn attempt(set: &EffectSet, (round, gain, kept): (usize, f64, bool)) -> Attempt {
+        let h = &set.members[0].0;
+        Attempt {
+            round,
+            name: h.name.to_owned(),
+            place: h.place.clone(),
+            score: gain,
+            share: 1.0,
+            fall: Some(gain),
+            parameters: 1,
+            gain: Some(gain),
+            together: None,
+            kept,
+            found: Vec::new(),
+            set: set.clone(),
+            shown: Shown { errors: Vec::new(), condition: 1.0 },
+        }
+    }
+
+    #[test]
+    fn sets_are_tied_where_they_differ_by_little_of_what_the_better_one_leaves() {
+        let all = catalogue::hypotheses(&Facts::of_joints(2));
+        let of = |place: &str| {
+            let h = all.iter().find(|h| h.place == place).expect("a joint has effects");
+            EffectSet::default().with(h, &h.neutral())
+        };
+        let [one, other] = ["joint:j0", "joint:j1"].map(of);
+        let tried = |gain: f64| [attempt(&one, (0, 1000.0, true)), attempt(&other, (0, gain, false))];
+        let titles = |left: f64, gain: f64| tied(&tried(gain), left).map(|set| set.titles());
+        assert_eq!(titles(400.0, 985.0), Some(other.titles()), "fifteen are less than a twentieth of 400");
+        assert_eq!(titles(400.0, 975.0), None);
+        assert_eq!(titles(0.0, 995.0), Some(other.titles()), "where noise alone is left ten decide");
+        assert_eq!(titles(0.0, 985.0), None);
+        let mut earlier = tried(999.0).to_vec();
+        earlier.push(attempt(&one, (1, 50.0, true)));
+        assert!(tied(&earlier, 400.0).is_none(), "the last round decides");
+    }
+}

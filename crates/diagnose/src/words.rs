@@ -253,8 +253,10 @@ fn doubts(diagnosis: &Diagnosis) -> Option<String> {
     }
     let rivals = || diagnosis.effects.iter().flat_map(|e| &e.rivals);
     let nearest = rivals().min_by(|a, b| a.score_gap.total_cmp(&b.score_gap))?;
+    // Those that are told though the data decide are near beside what is left, which is none of theirs.
     Some(format!(
-        "The nearest other explanation, {} at {}, is worse by {} in the information criterion (10 is decisive).",
+        "The nearest other explanation, {} at {}, is worse by {} in the information criterion: less than a twentieth of what either leaves beyond \
+         noise, so that what neither of them has may decide between them.",
         plain_name(&nearest.name),
         place_words(&nearest.place),
         crate::number::digits(nearest.score_gap, 3)

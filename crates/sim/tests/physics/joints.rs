@@ -53,6 +53,27 @@ fn stop_takes_energy_and_holds_the_joint() {
 }
 
 #[test]
+fn a_joint_flies_up_to_its_stop_and_from_it_in_long_steps_and_not_on_it() {
+    let tree = wheel(|j| (j.position_limits, j.effort_limit) = (Some([-0.5, 0.5]), 50.0));
+    let mut world = world(fixed(tree, &Setup::new(Integrator::RungeKutta4)));
+    let place = |world: &World| (world.state().time, world.state().q[0], world.state().v[0]);
+    world.state_mut().v[0] = 2.0;
+    world.refresh();
+    assert!(world.advance_free(0.2).unwrap() && (world.state().q[0] - 0.4).abs() < 1e-12);
+    let before = place(&world);
+    assert!(!world.advance_free(0.2).unwrap(), "it would be 0.3 rad beyond its range");
+    assert_eq!(place(&world), before);
+    while world.state().v[0] > 0.0 {
+        run(&mut world, 1);
+    }
+    assert!(world.state().q[0] > 0.5 && !world.advance_free(0.2).unwrap(), "it leans on its stop");
+    while world.state().q[0] > 0.5 {
+        run(&mut world, 1);
+    }
+    assert!(world.state().v[0] < 0.0 && world.advance_free(0.2).unwrap(), "it has left it");
+}
+
+#[test]
 fn drive_holds_its_torque_limit_and_then_its_target() {
     for integrator in ALL {
         let mut spec = fixed(wheel(|_| ()), &Setup::new(integrator));
