@@ -60,11 +60,10 @@ pub(crate) fn seek(
     let hypotheses = |now: &Fitted| hypotheses_of(&problem, now, own);
     let usual = || catalogue::within(&Facts::new(&nominal.built, stage.tapes), &USUAL);
     let numbers = plant.scenario.tolerance.is_exact().then(usual);
-    let begun: Vec<Fitted> = known.iter().map(|set| beginning(&problem, &nominal, set)).collect::<Result<_, _>>()?;
-    let begun = begun.into_iter().min_by(|a, b| a.score.total_cmp(&b.score));
+    let begun = known.iter().map(|set| beginning(&problem, &nominal, set)).reduce(likelier).transpose()?;
     // What they took is not taken from what may be found.
     if begun.is_some() {
-        stage.work.is_prepared();
+        stage.work.begin_to_count();
     }
     let (mut found, searched) = search(&problem, (nominal, begun), &hypotheses, numbers)?;
     let heard = problem.clone().heard_by(&found.best.set)?;
@@ -83,6 +82,15 @@ fn beginning(problem: &Problem<'_>, nominal: &Fitted, known: &EffectSet) -> Resu
     let [before, after] = [nominal.score, begun.score];
     problem.stage.work.watch.step(&format!("with {}: −2 log L {before:.1} → {after:.1}", names(known)));
     Ok(begun)
+}
+
+/// The likelier of two beginnings; one alone where the other leads nowhere.
+fn likelier(one: Result<Fitted, DiagnoseError>, other: Result<Fitted, DiagnoseError>) -> Result<Fitted, DiagnoseError> {
+    match (one, other) {
+        (Ok(one), Ok(other)) => Ok(if other.score.total_cmp(&one.score).is_lt() { other } else { one }),
+        (Ok(alone), Err(_)) | (Err(_), Ok(alone)) => Ok(alone),
+        (error, Err(_)) => error,
+    }
 }
 
 /// The runs that are searched along: of many an even selection, by how many steps of a body they take.

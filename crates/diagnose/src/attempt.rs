@@ -48,6 +48,7 @@ impl Attempt {
         self.gain = Some(part - self.parameters as f64 * (before.count as f64).ln());
         let is_this = |m: &&(Hypothesis, Vec<f64>)| m.0.name == self.name && m.0.place == self.place;
         self.found = after.set.members.iter().find(is_this).map(|m| m.1.clone()).unwrap_or_default();
+        self.set = after.set.clone();
     }
 
     /// Name and place, as a hypothesis has them.

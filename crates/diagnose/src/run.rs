@@ -225,7 +225,7 @@ fn prepare<'w>(
     let mut begun = begin(&plant, (&built, tapes), set, way, &mut clock)?;
     said.extend(pace::said_of_scheme(own, &plant));
     begun.said.extend(said);
-    work.is_prepared();
+    work.begin_to_count();
     Ok(Prepared { plant, inspection, begun, clock })
 }
 

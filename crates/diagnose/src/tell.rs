@@ -13,7 +13,7 @@ use crate::hypothesis::Hypothesis as Member;
 use crate::linear::{Segment, Stage};
 use crate::run::Findings;
 use crate::share;
-use crate::ties::near_the_best;
+use crate::ties::near;
 use crate::vocabulary::unit;
 use nalgebra::DMatrix;
 use record::inspect::Inspection;
@@ -223,11 +223,7 @@ pub(crate) fn rivals_by_round(attempts: &[Attempt], set: &EffectSet, left: f64) 
         let Some(own) = attempts.iter().find(|a| is_chosen(a)) else { return Vec::new() };
         let Some(gain) = own.together.or(own.gain) else { return Vec::new() };
         let is_found = |a: &Attempt| set.findings().any(|(h, _)| h.title() == a.title());
-        let same_round = attempts.iter().filter(|a| a.round == own.round && !is_found(a));
-        // One that is better by far was told in other windows than the chosen one in the end.
-        let near = same_round
-            .filter_map(|a| a.gain.map(|g| (a, gain - g)))
-            .filter(|(_, gap)| gap.abs() < near_the_best(gain, left));
+        let near = near(attempts, (own.round, gain), left).filter(|(a, _)| !is_found(a));
         near.map(|(a, score_gap)| (chosen.title(), Rival { name: a.name.clone(), place: a.place.clone(), score_gap }))
             .collect()
     };

@@ -8,25 +8,37 @@ use crate::diagnosis::Diagnosis;
 use crate::effect_set::EffectSet;
 use crate::hypothesis::Hypothesis;
 use crate::vocabulary::plain_name;
-use crate::words::place_words;
+use crate::words::{UNDECIDED, place_words};
 
 /// The set that came nearest to the one that was chosen in the last round, of those that are told as its rivals. `left`: what that leaves beyond noise.
 pub(crate) fn tied(attempts: &[Attempt], left: f64) -> Option<EffectSet> {
     let own = attempts.iter().filter(|a| a.kept).max_by_key(|a| a.round)?;
     let gain = own.together.or(own.gain)?;
-    let same_round = attempts.iter().filter(|a| a.round == own.round && !a.kept && !a.set.members.is_empty());
-    let gap = |a: &&Attempt| a.gain.map_or(f64::INFINITY, |g| (gain - g).abs());
-    let nearest = same_round.min_by(|a, b| gap(a).total_cmp(&gap(b)))?;
-    (gap(&nearest) < near_the_best(gain, left)).then(|| nearest.set.clone())
+    let others = near(attempts, (own.round, gain), left).filter(|(a, _)| !a.kept && !a.set.members.is_empty());
+    others.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).map(|(nearest, _)| nearest.set.clone())
+}
+
+/// What was tried in a round and came near what gained so much there, and by how much it gained less. `left`: what that leaves beyond noise.
+pub(crate) fn near(
+    attempts: &[Attempt],
+    (round, gain): (usize, f64),
+    left: f64,
+) -> impl Iterator<Item = (&Attempt, f64)> {
+    let same_round = attempts.iter().filter(move |a| a.round == round);
+    let gaps = same_round.filter_map(move |a| a.gain.map(|g| (a, gain - g)));
+    // One that is better by far was told in other windows than the chosen one in the end.
+    gaps.filter(move |(_, gap)| gap.abs() < near_the_best(gain, left))
 }
 
 /// Which of some tied sets whole runs took, in words; none where they took neither or there is but one.
 pub(crate) fn said_of(tied: &[EffectSet], found: &Diagnosis) -> Option<String> {
-    let own = |a: &EffectSet, b: &EffectSet| a.findings().find(|(h, _)| !b.has_finding(h)).map(|(h, _)| h.clone());
+    fn own<'s>(a: &'s EffectSet, b: &EffectSet) -> Option<&'s Hypothesis> {
+        a.findings().map(|(h, _)| h).find(|h| !b.has_finding(h))
+    }
     let [one, other] = tied else { return None };
     let [one, other] = [own(one, other)?, own(other, one)?];
     let is_taken = |h: &Hypothesis| found.effects.iter().any(|e| e.name == h.name && e.place == h.place);
-    let (taken, left) = match (is_taken(&one), is_taken(&other)) {
+    let (taken, left) = match (is_taken(one), is_taken(other)) {
         (true, false) => (one, other),
         (false, true) => (other, one),
         _ => return None,
@@ -34,15 +46,15 @@ pub(crate) fn said_of(tied: &[EffectSet], found: &Diagnosis) -> Option<String> {
     let words = |h: &Hypothesis| format!("{} at {}", plain_name(h.name), place_words(&h.place));
     Some(format!(
         "Windows cannot tell {} from {}: both leave far more than noise, and nearly as much. Along whole runs the former is likelier.",
-        words(&taken),
-        words(&left)
+        words(taken),
+        words(left)
     ))
 }
 
 /// Difference of the information criterion up to which another explanation is told, of one that gains so much and leaves so much beyond noise: what is left
 /// may stand for the wrong one of two as well as for the right one, where noise alone is left ten decide (Kass and Raftery 1995).
 pub(crate) fn near_the_best(gain: f64, left: f64) -> f64 {
-    (0.05 * gain.min(left)).max(10.0)
+    (0.05 * gain.min(left)).max(UNDECIDED)
 }
 
 #[cfg(test)]
@@ -52,7 +64,7 @@ mod tests {
     use crate::facts::Facts;
     use crate::screen::Shown;
 
-    fn attempt(set: &EffectSet, (round, gain, kept): (usize, f64, bool)) -> Attempt {
+    fn attempt(set: &EffectSet, round: usize, gain: f64, kept: bool) -> Attempt {
         let h = &set.members[0].0;
         Attempt {
             round,
@@ -79,14 +91,14 @@ mod tests {
             EffectSet::default().with(h, &h.neutral())
         };
         let [one, other] = ["joint:j0", "joint:j1"].map(of);
-        let tried = |gain: f64| [attempt(&one, (0, 1000.0, true)), attempt(&other, (0, gain, false))];
+        let tried = |gain: f64| [attempt(&one, 0, 1000.0, true), attempt(&other, 0, gain, false)];
         let titles = |left: f64, gain: f64| tied(&tried(gain), left).map(|set| set.titles());
         assert_eq!(titles(400.0, 985.0), Some(other.titles()), "fifteen are less than a twentieth of 400");
         assert_eq!(titles(400.0, 975.0), None);
         assert_eq!(titles(0.0, 995.0), Some(other.titles()), "where noise alone is left ten decide");
         assert_eq!(titles(0.0, 985.0), None);
         let mut earlier = tried(999.0).to_vec();
-        earlier.push(attempt(&one, (1, 50.0, true)));
+        earlier.push(attempt(&one, 1, 50.0, true));
         assert!(tied(&earlier, 400.0).is_none(), "the last round decides");
     }
 }

@@ -100,7 +100,7 @@ impl<'a> Work<'a> {
     }
 
     /// What was done so far was to begin with: a search has its whole limit still, however short the steps are that a recording asks for.
-    pub(crate) fn is_prepared(&self) {
+    pub(crate) fn begin_to_count(&self) {
         self.prepared.store(self.total().evaluations, Ordering::Relaxed);
     }
 
@@ -149,7 +149,7 @@ mod tests {
         assert_eq!(work.total(), Total { replays: 2, simulated: 0.75, evaluations: 335 });
         work.add(0.0, 1, &of(101, 0));
         assert!(work.is_spent(Until::Fit));
-        work.is_prepared();
+        work.begin_to_count();
         assert!(!work.is_spent(Until::Search));
         let anew = work.anew();
         assert!(!anew.is_spent(Until::Search) && anew.limit == work.limit && anew.total().evaluations == 0);

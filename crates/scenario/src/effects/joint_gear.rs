@@ -90,6 +90,7 @@ fn gear(entry: &Entry<'_>, joint: &mut multibody::Joint, gap: f64, faults: &mut 
 /// Rates, rad/s, at which a rotor swings on the springs that are screened: the stiffest that a replay still resolves, and a softer one; softer still without
 /// play, which a joint that carries a load sags on.
 const RATES: [f64; 3] = [300.0, 120.0, 48.0];
+/// Of these, the first so many with play as well.
 const WITH_PLAY: usize = 2;
 
 /// A spring on which a rotor swings at a rate, with a tenth of its aperiodic damping.
