@@ -185,4 +185,5 @@ def main():
         print(f"{within} of {len(numbers_off)} numbers ({100 * within / len(numbers_off):.1f} %) within their 95 % intervals")
 
 
-main()
+if __name__ == "__main__":
+    main()

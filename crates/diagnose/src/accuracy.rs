@@ -26,6 +26,10 @@ pub(crate) fn errors(findings: &Findings, stage: &Stage<'_>) -> Errors {
         holdout: of_role(false, record::Role::Holdout),
         window_s: findings.window,
         windowed: of_role(true, judging(stage.tapes)).unwrap_or(none),
+        within_tolerance: judgement.tolerated.as_ref().map(|[windows, _]| {
+            let judging = judging(stage.tapes);
+            windows.rms(|run| stage.tapes[run].role == judging)
+        }),
         runs: stage.tapes.iter().enumerate().map(run).collect(),
         channels: channel_errors(findings, stage),
     }

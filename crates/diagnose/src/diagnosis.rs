@@ -199,6 +199,10 @@ pub struct Errors {
     pub window_s: f64,
     /// Windowed, over the holdout runs; over the fit runs where there are none.
     pub windowed: BeforeAfter,
+    /// Windowed, over the same runs: the nominal model with its numbers corrected within the scenario's tolerances, and no effect; what effects explain is a
+    /// share of this. None where no number is free or no effect was found.
+    #[serde(default)]
+    pub within_tolerance: Option<f64>,
     /// Run by run.
     pub runs: Vec<RunError>,
     /// Channel by channel in its own unit, the one that is most wrong first; over the holdout runs, or the fit runs where there are none.

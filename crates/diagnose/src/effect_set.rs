@@ -65,6 +65,12 @@ impl EffectSet {
         found.fold(self.clone(), |set, m| set.without(m))
     }
 
+    /// The findings alone.
+    pub fn without_tolerated(&self) -> Self {
+        let numbers = (0..self.members.len()).rev().filter(|m| self.members[*m].0.is_tolerated());
+        numbers.fold(self.clone(), |set, m| set.without(m))
+    }
+
     /// Mean and inverse variance of a fitted coordinate's prior, where it has one: its tolerance, or how far an effect's number may be expected.
     pub(crate) fn prior(&self, (m, k): (usize, usize)) -> Option<(f64, f64)> {
         let h = &self.members[m].0;
@@ -202,6 +208,20 @@ mod tests {
         let [smooth, stiff] = [0, 1].map(|way| &free[way].members[1].1);
         assert!(0.0 < near[2] && near[2] < smooth[2] && stiff[2] < smooth[2], "smoothest where it creeps fastest");
         assert!(stiff[1] < smooth[1], "stiffest where it yields least");
+    }
+
+    #[test]
+    fn what_is_held_goes_with_its_member() {
+        let all = hypotheses(&Facts::of_joints(1));
+        let of = |name: &str| all.iter().find(|h| h.name == name).expect("it is in the library");
+        let (dry, viscous) = (of("joint-coulomb-friction"), of("joint-viscous-friction"));
+        let mut number = viscous.clone();
+        number.tolerance = vec![0.1; number.coordinates.len()];
+        let set = EffectSet::default().with(&number, &number.neutral()).with(dry, &dry.neutral());
+        assert_eq!(set.held, [(1, 1), (1, 2)]);
+        let alone = set.without_tolerated();
+        assert_eq!((alone.titles(), &alone.held[..]), (vec![dry.title()], &[(0, 1), (0, 2)][..]));
+        assert_eq!(set.tolerated().titles(), [viscous.title()]);
     }
 
     #[test]

@@ -91,8 +91,7 @@ fn found_in(
     attempts.retain(|a| a.fall.is_some());
     // What it gained is told by likelihoods of flights, which a search beside touches does not hold against its own.
     attempts.iter_mut().filter(|a| !a.kept).for_each(|a| a.gain = None);
-    let mut set = best.clone();
-    set.members.retain(|(h, _)| !h.is_tolerated());
+    let set = best.without_tolerated();
     let problem = along::problem(&flying, &free, own, Role::Fit);
     let frame = problem.frame(&course.found.best);
     let start = |(run, time): &(usize, f64)| {

@@ -30,6 +30,20 @@ pub struct Judgement {
     pub windowed: [Prediction; 2],
     /// Whole runs.
     pub whole: [Prediction; 2],
+    /// In windows and over whole runs, what the nominal model predicts whose numbers alone are corrected within their tolerances: what effects
+    /// explain is what these leave. None where there are no such numbers, or no effects beside them.
+    pub tolerated: Option<[Prediction; 2]>,
+}
+
+/// Models to be judged: windows and whole runs of each, with the starts that the search has found.
+#[derive(Clone, Copy, Debug)]
+pub struct Models<'a> {
+    /// The nominal one.
+    pub nominal: [&'a Fit; 2],
+    /// The nominal one, its numbers corrected within their tolerances.
+    pub tolerated: Option<[&'a Fit; 2]>,
+    /// The corrected one.
+    pub found: [&'a Fit; 2],
 }
 
 /// One scalar of a run.
@@ -54,9 +68,10 @@ pub struct Scalar {
 pub fn judge(
     (few, all): (&Stage<'_>, &Stage<'_>),
     plant: &Plant,
-    (nominal, found): ([&Fit; 2], [&Fit; 2]),
+    models: Models<'_>,
     (window, follows): (f64, bool),
 ) -> Result<Judgement, DiagnoseError> {
+    let Models { nominal, tolerated, found } = models;
     let set = &found[0].set;
     let [few_tapes, all_tapes] = [few, all].map(|stage| as_late_as(&found[0].built, stage.tapes));
     let few = &Stage { tapes: &few_tapes, ..*few };
@@ -65,23 +80,35 @@ pub fn judge(
         residuals: fit.segments.par_iter().map(|s| all.residuals(&fit.built, s)).collect(),
         fit,
     };
-    let of = |[known, runs]: [&Fit; 2]| -> Result<[Prediction; 2], DiagnoseError> {
+    let of = |[known, runs]: [&Fit; 2], name: &'static str| -> Result<[Prediction; 2], DiagnoseError> {
         let is_last = known.set.members.len() == set.members.len();
         let stage = Stage { pace: if is_last { all.pace } else { few.pace }, ..*few };
         let set = known.set.frozen();
         let built = plant.build(&set.effects())?;
         let runs = if is_last { found[1] } else { runs };
-        let model = Candidate { stage, plant, set, built, is_last, known, runs };
+        let is_corrected = is_last || name == TOLERATED;
+        let model = Candidate { stage, plant, set, built, name, is_corrected, known, runs };
         let starts = if follows { model.starts_along_runs(window)? } else { model.starts_in_windows(window)? };
         Ok(starts.map(predict))
     };
-    let [windows_before, runs_before] = of(nominal)?;
+    let [windows_before, runs_before] = of(nominal, NOMINAL)?;
     let [windows_after, runs_after] = match set.members.is_empty() {
         true => [windows_before.clone(), runs_before.clone()],
-        false => of(found)?,
+        false => of(found, CORRECTED)?,
     };
-    Ok(Judgement { windowed: [windows_before, windows_after], whole: [runs_before, runs_after] })
+    let has_effects = set.has_findings();
+    let tolerated = tolerated.filter(|fits| has_effects && !fits[0].set.members.is_empty());
+    Ok(Judgement {
+        windowed: [windows_before, windows_after],
+        whole: [runs_before, runs_after],
+        tolerated: tolerated.map(|fits| of(fits, TOLERATED)).transpose()?,
+    })
 }
+
+/// Who is judged, for who watches.
+const NOMINAL: &str = "nominal model";
+const TOLERATED: &str = "nominal model, its numbers within their tolerances";
+const CORRECTED: &str = "corrected model";
 
 /// Runs with their sensors as late as they are in a model; as they were where none is.
 fn as_late_as<'t>(built: &Built, tapes: &'t [Tape]) -> Cow<'t, [Tape]> {
@@ -98,8 +125,9 @@ struct Candidate<'a> {
     /// Its effects, no number free.
     set: EffectSet,
     built: Built,
-    /// Whether it is the corrected one.
-    is_last: bool,
+    name: &'static str,
+    /// Whether it is corrected: by effects, or within tolerances.
+    is_corrected: bool,
     /// The fit whose windows are known, and that whose whole runs are.
     known: &'a Fit,
     runs: &'a Fit,
@@ -107,13 +135,12 @@ struct Candidate<'a> {
 
 impl Candidate<'_> {
     fn say(&self, what: &str, fit: &Fit) {
-        let model = if self.is_last { "corrected" } else { "nominal" };
-        self.stage.work.watch.step(&format!("{model} model, {what}: error {:.3}", fit.rms()));
+        self.stage.work.watch.step(&format!("{}, {what}: error {:.3}", self.name, fit.rms()));
     }
 
     /// What a wrong model is off by takes no more exact starts.
     fn effort(&self) -> Effort {
-        if self.is_last { Effort::JUDGED } else { Effort { iterations: GLANCES, ..Effort::JUDGED } }
+        if self.is_corrected { Effort::JUDGED } else { Effort { iterations: GLANCES, ..Effort::JUDGED } }
     }
 
     fn fit(&self, segments: Vec<Segment>, effort: Effort) -> Result<Fit, DiagnoseError> {
@@ -136,7 +163,7 @@ impl Candidate<'_> {
         let mut windowed = self.fit(windows, self.effort())?;
         self.say("windows", &windowed);
         let is_plausible = || windowed.rms() < PLAUSIBLE || lost::calc_poor_share(&self.stage, &windowed) <= lost::FEW;
-        if self.is_last && is_plausible() {
+        if self.is_corrected && is_plausible() {
             let anew = self.stage.begun_anew(&self.built, &windowed.segments, (Effort::JUDGED, lost::POOR_WINDOW));
             windowed = self.fit(anew, Effort { iterations: 0, ..Effort::JUDGED })?;
         }
@@ -148,7 +175,7 @@ impl Candidate<'_> {
     fn starts_in_windows(&self, window: f64) -> Result<[Fit; 2], DiagnoseError> {
         let windowed = self.fit_windows(self.windows(window))?;
         let mut runs = joined(&windowed.segments, self.stage.tapes);
-        if !self.is_last {
+        if !self.is_corrected {
             begin_from(&self.stage, &mut runs, &self.runs.segments);
         }
         let whole = self.follow(&runs)?;
@@ -164,7 +191,7 @@ impl Candidate<'_> {
         let mut whole = self.follow(&runs)?;
         self.say("whole runs", &whole);
         // Where the model that was found is near, single runs that are far off stand in wrong valleys.
-        if self.is_last && self.known.rms() < PLAUSIBLE {
+        if self.is_corrected && self.known.rms() < PLAUSIBLE {
             let anew = self.stage.begun_anew(&self.built, &whole.segments, (Effort::JUDGED, lost::POOR_RUN));
             whole = self.fit(anew, Effort { iterations: 1, ..Effort::JUDGED })?;
         }
@@ -172,7 +199,7 @@ impl Candidate<'_> {
         let followed = self.near(&whole);
         self.stage.along(&self.built, &followed, &mut windows);
         let mut windowed = self.fit_windows(windows)?;
-        if whole.rms() >= lost::NEAR && self.is_last {
+        if whole.rms() >= lost::NEAR && self.is_corrected {
             whole = self.follow(&joined(&windowed.segments, self.stage.tapes))?;
             let found = self.near(&whole);
             if found.len() > followed.len() {
@@ -209,7 +236,7 @@ fn begin_from(stage: &Stage<'_>, segments: &mut [Segment], known: &[Segment]) {
 
 impl Prediction {
     /// Root mean square over some runs, units of noise.
-    fn rms(&self, wanted: impl Fn(usize) -> bool) -> f64 {
+    pub(crate) fn rms(&self, wanted: impl Fn(usize) -> bool) -> f64 {
         let count: usize = self.of(&wanted).map(|r| r.len()).sum();
         (self.cost(wanted) / count.max(1) as f64).sqrt()
     }
@@ -253,6 +280,13 @@ impl Judgement {
     /// Squared norms of the residuals of some runs: nominal and corrected.
     pub fn costs(&self, windowed: bool, wanted: impl Fn(usize) -> bool) -> [f64; 2] {
         self.predictions(windowed).each_ref().map(|p| p.cost(&wanted))
+    }
+
+    /// Windows, or whole runs, of the model that effects are held against, and of the corrected one.
+    pub(crate) fn beside_effects(&self, windowed: bool) -> [&Prediction; 2] {
+        let [before, after] = self.predictions(windowed);
+        let tolerated = self.tolerated.as_ref().map(|[windows, runs]| if windowed { windows } else { runs });
+        [tolerated.unwrap_or(before), after]
     }
 
     fn predictions(&self, windowed: bool) -> &[Prediction; 2] {

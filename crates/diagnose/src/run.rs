@@ -21,7 +21,7 @@ use crate::facts::Facts;
 use crate::fit::{Effort, Fit, UNDAMPED, fit};
 use crate::held::{engages, holds};
 use crate::identify::fit::Fitted;
-use crate::judge::{Judgement, judge};
+use crate::judge::{Judgement, Models, judge};
 use crate::limits;
 use crate::linear::{self, Segment, Stage, Steps};
 use crate::locate::{Located, locate, locate_in, places};
@@ -240,7 +240,7 @@ fn diagnose_in(
     let Begun { tapes, thinned, doubt, window, discretisation, nominal, mut said } = begun;
     let pace = discretisation.pace;
     let mut stage = Stage { tapes: &thinned, pace, work, doubt, hears: None };
-    let Sought { nominal, whole, located, standing, attempts, mut rivals } =
+    let Sought { nominal, whole, tolerated, located, standing, attempts, mut rivals } =
         seek(&mut stage, &plant, (nominal, &tapes, window), &mut clock)?;
     clock.stage("fit to all samples", 0.75);
     let follows = standing.follows();
@@ -255,7 +255,8 @@ fn diagnose_in(
         said.push(SPENT.to_owned());
     }
     clock.stage("predict every run", 0.85);
-    let judgement = judge((&few, &stage), &plant, ([&nominal, &whole], [&found, &found]), (window, follows))?;
+    let models = Models { nominal: [&nominal, &whole], tolerated: Some(tolerated.each_ref()), found: [&found, &found] };
+    let judgement = judge((&few, &stage), &plant, models, (window, follows))?;
     let left = left_by((&few, &thin), &plant, (&nominal, &located), &judgement)?;
     clock.stage("judge the numbers", 0.97);
     let (explained, of_use) = share::explained(&judgement, &tapes, &found, window);
@@ -383,14 +384,16 @@ fn predict_along(
     let best = &course.found.best;
     let thin_best = Fitted { set: best.set.clone(), ..thin_best };
     let [known, corrected] = along::windows(few, plant, (own, window), [&course.found.nominal, &thin_best])?;
-    let known = Fit { set: EffectSet::default(), built: plant.build(&[])?, ..known };
+    let tolerated = known;
+    let known = Fit { set: EffectSet::default(), built: plant.build(&[])?, ..tolerated.clone() };
     let runs: Vec<Segment> =
         joined(&corrected.segments, few.tapes).into_iter().filter(|s| few.tapes[s.run].role == Role::Fit).collect();
     let whole = follow_with(few, plant, best.set.frozen(), &runs, Effort::JUDGED)?;
     let follows = whole.rms() < lost::NEAR;
     let windows = along::windows_of(&along::problem(few, plant, own, Role::Fit), best, window);
     let corrected = Fit { set: best.set.clone(), built: best.built.clone(), ..corrected };
-    let judgement = judge((few, all), plant, ([&known, &known], [&corrected, &whole]), (window, follows))?;
+    let models = Models { nominal: [&known; 2], tolerated: Some([&tolerated; 2]), found: [&corrected, &whole] };
+    let judgement = judge((few, all), plant, models, (window, follows))?;
     // A run that is followed in windows and not as a whole says how far ahead the model tells, not how good it is.
     let error = |run: usize, windowed: bool| judgement.rms(windowed, |r| r == run)[1];
     let goes_astray = |run: usize| error(run, false) >= lost::NEAR && error(run, true) < lost::NEAR;
@@ -588,7 +591,7 @@ fn verdict(found: &Fit, is_noise: [bool; 2], of_use: Use) -> Verdict {
 
 /// Whether what was found leaves next to nothing of the mismatch where it is judged.
 fn leaves_next_to_nothing(judgement: &Judgement, found: &Fit, follows: bool) -> bool {
-    let [before, after] = judgement.rms(!follows, |run| found.has_run(run));
+    let [before, after] = judgement.beside_effects(!follows).map(|p| p.rms(|run| found.has_run(run)));
     let left = (after * after - 1.0) / (before * before - 1.0).max(1e-9);
     left < NEXT_TO_NOTHING && after < RIGHT
 }

@@ -2,8 +2,8 @@
 //!
 //!   S = (E₀ − E₁)/(E₀ − 1)
 //!
-//! E₀ and E₁ are mean squares in units of noise of the nominal and of the corrected model, each window with an initial state of its own under
-//! either model; noise alone leaves 1. Where no run was left out, those of the fit stand for them, and that is said. The interval is
+//! E₀ and E₁ are mean squares in units of noise of the nominal model, its numbers corrected within their tolerances, and of the corrected one, each window with an
+//! initial state of its own under either model; noise alone leaves 1. Where no run was left out, those of the fit stand for them, and that is said. The interval is
 //! the middle 95 % of S over resampled windows (bootstrap: Efron and Tibshirani 1993, ch. 13); windows in which either model leaves more
 //! than noise are resampled, of the others there is nothing to tell: where parts meet once in a run, one window of many holds all. A model *helps*
 //! where that interval, or that of the windows' mean logarithm of E₀/E₁, lies above zero and no run is predicted worse than before: a law
@@ -94,9 +94,10 @@ pub(crate) struct Use {
 pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, window_s: f64) -> (Explained, Use) {
     let judging = judging(tapes);
     let left_out = judging == Role::Holdout;
-    let whole = judgement.rms_of(tapes, false, judging);
-    let [runs, along] =
-        [&judgement.windowed, &judgement.whole].map(|of| windows_of(of, |run| tapes[run].role == judging));
+    let is_judged = |run: usize| tapes[run].role == judging;
+    let whole =
+        tapes.iter().any(|t| t.role == judging).then(|| judgement.beside_effects(false).map(|p| p.rms(is_judged)));
+    let [runs, along] = [true, false].map(|windowed| windows_of(judgement.beside_effects(windowed), is_judged));
     let shows = |runs: &BTreeMap<usize, Vec<Window>>| runs.values().flatten().any(|w| w.tells(found.doubt));
     let is_slow = !shows(&runs) && whole.is_some_and(|[before, _]| before < NEAR) && shows(&along);
     let lengths = along.keys().map(|run| tapes[*run].span.1 - tapes[*run].span.0);
@@ -130,7 +131,7 @@ fn drifts(judgement: &Judgement, tapes: &[Tape]) -> bool {
 }
 
 /// Windows by run.
-fn windows_of([before, after]: &[Prediction; 2], wanted: impl Fn(usize) -> bool) -> BTreeMap<usize, Vec<Window>> {
+fn windows_of([before, after]: [&Prediction; 2], wanted: impl Fn(usize) -> bool) -> BTreeMap<usize, Vec<Window>> {
     let mut runs: BTreeMap<usize, Vec<Window>> = BTreeMap::new();
     let pairs = before.fit.segments.iter().zip(&before.residuals).filter(|(s, _)| wanted(s.run));
     for (segment, r) in pairs {

@@ -31,6 +31,8 @@ pub(crate) struct Sought {
     pub nominal: Fit,
     /// Over whole runs.
     pub whole: Fit,
+    /// The same in windows and over whole runs, its numbers free within their tolerances.
+    pub tolerated: [Fit; 2],
     /// Where forces are missing beside it.
     pub located: Located,
     /// What was found.
@@ -54,6 +56,7 @@ pub(crate) fn seek(
     let located = locate(stage, plant, &nominal, places(&own_parts, window))?;
     clock.stage("search", 0.25);
     let (standing, whole) = stood(stage, plant, (&nominal, window))?;
+    let tolerated = [&standing.windows, &standing.whole].map(Fit::clone);
     let candidates = |stage: &Stage<'_>, now: &Fit| {
         let own = Facts::new(&now.built, tapes).of_parts(&own_parts);
         let window = median_length(&now.segments);
@@ -71,7 +74,7 @@ pub(crate) fn seek(
         Some(flown) => (flown.rivals.clone(), beside_flights(stage, plant, (&nominal, window, flown), &candidates)?),
         None => (Vec::new(), search(stage, plant, (standing, Vec::new()), &candidates, &LIMITS)?),
     };
-    Ok(Sought { nominal, whole, located, standing, attempts, rivals })
+    Ok(Sought { nominal, whole, tolerated, located, standing, attempts, rivals })
 }
 
 /// A model as it stands in windows and over whole runs, with its numbers free within their tolerances; and its whole runs without that.

@@ -133,12 +133,15 @@ pub fn when_words(located: &Located, evidence: &Evidence) -> String {
 fn explanation(diagnosis: &Diagnosis) -> Option<String> {
     let effects: Vec<String> = diagnosis.effects.iter().map(effect_words).collect();
     let list = join(&effects);
+    let within = within_words(diagnosis);
     match (diagnosis.verdict, effects.is_empty()) {
         (Verdict::NoMismatch, _) => None,
-        (Verdict::Explained, false) => Some(format!("It is explained by {list}.")),
+        (Verdict::Explained, false) if within.is_empty() => Some(format!("It is explained by {list}.")),
+        (Verdict::Explained, false) => Some(format!("{within}that is explained by {list}.")),
         (Verdict::PartlyExplained, false) => {
             let part = diagnosis.explained_share.as_ref().map_or_else(|| "A part".to_owned(), share_words);
-            Some(format!("{part} of it is explained by {list}. {}", remainder_words(diagnosis)))
+            let of = if within.is_empty() { "it" } else { "that" };
+            Some(format!("{within}{part} of {of} is explained by {list}. {}", remainder_words(diagnosis)))
         }
         _ => Some(
             "No effect of the library helps on runs that were left out of the fit, alone or with others; below stands where the \
@@ -146,6 +149,18 @@ fn explanation(diagnosis: &Diagnosis) -> Option<String> {
                 .to_owned(),
         ),
     }
+}
+
+/// "Its numbers, corrected within their tolerances, leave 12.3 times the noise in windows; "; nothing where none is free.
+fn within_words(diagnosis: &Diagnosis) -> String {
+    let left = diagnosis.error.within_tolerance.filter(|left| left.is_finite());
+    left.map_or_else(String::new, |left| {
+        let times = noise(left);
+        format!(
+            "Its numbers, corrected within their tolerances, leave {times} times the noise over {} s at a time; ",
+            crate::number::short(diagnosis.error.window_s)
+        )
+    })
 }
 
 /// "99.6": a share in per cent, with as many digits as tell it from all.
