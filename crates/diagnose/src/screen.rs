@@ -31,6 +31,8 @@ pub struct Score {
     pub rank: usize,
     /// Coordinates to begin a refit with.
     pub start: Vec<f64>,
+    /// How far the numbers that are fitted already go with it; empty where the screen does not say.
+    pub beside: Vec<f64>,
     /// How well the data show it.
     pub shown: Shown,
 }
@@ -320,7 +322,15 @@ fn score(
     let weights: Vec<f64> = amplitudes.iter().copied().collect();
     let start = hypothesis.start_from(point, &weights)?;
     let shown = find_shown(hypothesis, point, (&a, &inverse));
-    (score.is_finite() && rank > 0).then_some(Score { hypothesis: index.0, point: index.1, score, rank, start, shown })
+    (score.is_finite() && rank > 0).then_some(Score {
+        hypothesis: index.0,
+        point: index.1,
+        score,
+        rank,
+        start,
+        beside: Vec::new(),
+        shown,
+    })
 }
 
 /// A and b of the last `n` columns with the first `active` ones projected out.

@@ -254,6 +254,7 @@ mod tests {
             score: 1.0,
             rank: 1,
             start: vec![0.0],
+            beside: Vec::new(),
             shown: Shown { errors: Vec::new(), condition: 1.0 },
         };
         let scores: Vec<Score> = (0..3).map(score).collect();

@@ -5,10 +5,11 @@
 //! numbers themselves. A step is taken if it lowers the marginal likelihood's −2 log as made linear there, and shortened where it does not.
 
 use super::coarse::{self, Coarse};
+use super::damped::{Look, SHORTER, Way};
 use super::forces::{Force, first_spread, forces};
 use super::marginal::{Chain, Estimate, Linear, Spread, estimate, price_of_factor};
 use super::shown::shown;
-use super::step::{next_sizes, within_bounds};
+use super::step::next_sizes;
 use super::track::{Base, Bases, Column, Frame, Interval, Link, Side, Source, Track, coordinates};
 use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
@@ -102,12 +103,12 @@ const SAMPLES: usize = 12;
 /// How many times as many intervals as the shortest run another one has at most.
 const LONGER: usize = 32;
 /// How many times as many a run has where a replay leaves the range of numbers, one after the other.
-const SHORTER: [usize; 2] = [2, 4];
+const FINER: [usize; 2] = [2, 4];
 /// Promised fall of −2 log likelihood below which a fit has converged.
-const CONVERGED: f64 = 0.3;
+pub(super) const CONVERGED: f64 = 0.3;
 /// Share of what a look has brought below which a step that does not bring what it promises is not shortened.
 const LITTLE: f64 = 0.01;
-/// Most times that a step is shortened, to the half, an eighth, a sixty-fourth …; what is left of it each time is this to the power of the time.
+/// Shares of the way to a model that cannot be built that are tried instead: powers of the half.
 const HALVINGS: i32 = 4;
 const NEARER: f64 = 0.5;
 /// Steps of the spread: from afar, and near.
@@ -211,7 +212,7 @@ impl<'a> Problem<'a> {
         if self.runs.is_empty() {
             return Err(self.lost());
         }
-        let again = SHORTER.into_iter().map(|times| times * self.knots);
+        let again = FINER.into_iter().map(|times| times * self.knots);
         again.fold(made(self.knots), |known, knots| known.or_else(|_| made(knots)))
     }
 
@@ -366,25 +367,28 @@ impl<'a> Problem<'a> {
             return self.settle(now, SETTLING, reach.reuse);
         }
         let mut sizes = first_sizes(&now.set);
-        let (mut before, mut promised): (Option<Fitted>, f64) = (None, f64::INFINITY);
-        let mut halved = 0i32;
+        let mut way = Way::default();
+        let mut promised = f64::INFINITY;
         for iteration in 0..reach.iterations {
             let steps = if iteration == 0 { STEPS[0] } else { STEPS[1] };
-            let most = before.as_ref().map_or(f64::INFINITY, |b| b.score + CONVERGED);
+            let most = way.most();
             let here = self.here(&mut now, (&slots, &sizes), (reach.reuse || iteration > 0, steps), most);
-            if let Some(last) = before.as_ref().filter(|_| here.is_err()) {
+            if let Some((last, ..)) = way.last.as_ref().filter(|_| here.is_err()) {
                 // A look that has brought nearly all that it can is not worth a shorter step.
-                if halved >= HALVINGS || reach.reuse && promised < LITTLE * (from.score - last.score) {
-                    return Ok(Fitted { converged: false, ..last.clone() });
+                let is_over = reach.reuse && promised < LITTLE * (from.score - last.score);
+                let last = Fitted { converged: false, ..last.clone() };
+                if way.shorter >= SHORTER || is_over {
+                    return Ok(last);
                 }
-                halved += 1;
-                now = self.between(last, &now, NEARER.powi(halved))?;
+                let Some(next) = way.shorter(self) else { return Ok(last) };
+                now = next;
                 continue;
             }
             let (made, here, score) = here?;
-            let ridge = ridge_of(&now.set, slots.len());
             let chains = made.chains(&(0..slots.len()).collect::<Vec<_>>());
-            let found = estimate(&chains, Some(&ridge), &here.spread, STEPS[1]);
+            let look =
+                Look { slots: &slots, chains, ridge: ridge_of(&now.set, slots.len()), spread: here.spread.clone() };
+            let found = estimate(&look.chains, Some(&look.ridge), &here.spread, STEPS[1]);
             (now.score, now.cost, now.count) = (score, here.cost, made.count);
             now.spread = here.spread.clone();
             now.covariance = found.covariance.clone();
@@ -394,20 +398,15 @@ impl<'a> Problem<'a> {
             if now.converged || iteration + 1 == reach.iterations {
                 break;
             }
-            halved = 0;
-            before = Some(now.clone());
-            let found = Estimate { theta: within_bounds(&now.set, &slots, &found), ..found };
+            let look = Look { spread: found.spread.clone(), ..look };
             // At the edge of what a body can be there is no way on.
-            let Ok(set) = self.possible(&now, now.set.moved(&slots, found.theta.as_slice())) else {
-                return Ok(Fitted { converged: false, ..now });
+            let step = way.next(&look, &found);
+            let Ok(next) = self.stepped(&now, &look, step) else {
+                return Ok(way.likelier(Fitted { converged: false, ..now }));
             };
-            let tracks = self.moved(&now, &chains, &found);
-            now = Fitted { tracks, spread: found.spread, ..self.with(&now, set)? };
+            way.last = Some((std::mem::replace(&mut now, next), look, found));
         }
-        match before {
-            Some(last) if now.score.is_nan() || now.score > last.score + CONVERGED => Ok(last),
-            _ => Ok(now),
-        }
+        Ok(way.likelier(now))
     }
 
     /// A set made linear where it stands, with the spread that is likeliest there, and its score; an error where that is more than a bound, before any
@@ -433,7 +432,7 @@ impl<'a> Problem<'a> {
 
     /// A set, or the largest share of the way to it from another one, or from what changes nothing, that is a model: a linear step knows nothing of what a
     /// body can be.
-    fn possible(&self, from: &Fitted, set: EffectSet) -> Result<EffectSet, DiagnoseError> {
+    pub(super) fn possible(&self, from: &Fitted, set: EffectSet) -> Result<EffectSet, DiagnoseError> {
         let Err(error) = self.plant.build(&set.effects()) else { return Ok(set) };
         let shares = (1..=HALVINGS).map(|k| NEARER.powi(k));
         let mut nearer = shares.map(|share| set.a_share_of_the_way(&from.set, share));
@@ -441,7 +440,7 @@ impl<'a> Problem<'a> {
     }
 
     /// A share of the way from one fit to another one of the same set.
-    fn between(&self, a: &Fitted, b: &Fitted, share: f64) -> Result<Fitted, DiagnoseError> {
+    pub(super) fn between(&self, a: &Fitted, b: &Fitted, share: f64) -> Result<Fitted, DiagnoseError> {
         let slots = a.set.slots();
         let by: Vec<f64> =
             slots.iter().map(|(m, k)| share * (b.set.members[*m].1[*k] - a.set.members[*m].1[*k])).collect();
@@ -453,7 +452,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Another set at the states of a fit.
-    fn with(&self, from: &Fitted, set: EffectSet) -> Result<Fitted, DiagnoseError> {
+    pub(super) fn with(&self, from: &Fitted, set: EffectSet) -> Result<Fitted, DiagnoseError> {
         let built = self.plant.build(&set.effects())?;
         let freedoms = self.coordinates(&built, &from.tracks[0]);
         let is_same = freedoms == from.freedoms;
@@ -564,7 +563,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The runs of a fit with their states where the smoother has them.
-    fn moved(&self, now: &Fitted, chains: &[Chain], found: &Estimate) -> Vec<Track> {
+    pub(super) fn moved(&self, now: &Fitted, chains: &[Chain], found: &Estimate) -> Vec<Track> {
         let frame = self.frame(now);
         let of = |(track, chain): (&Track, &Chain)| frame.moved(track, &chain.smoothed(&found.spread, &found.theta));
         now.tracks.par_iter().zip(chains).map(of).collect()

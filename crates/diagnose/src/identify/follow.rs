@@ -3,6 +3,7 @@
 use super::fit::{Fitted, Made, Problem, Reach, SETTLING};
 use super::marginal::score;
 use super::track::{Link, Told, Track};
+use crate::effect_set::EffectSet;
 use crate::error::DiagnoseError;
 use crate::held::holds;
 use nalgebra::DVector;
@@ -26,9 +27,8 @@ impl Problem<'_> {
             self.follow(&mut now)?;
             return Ok(now);
         }
-        // One law in the place of its equal: the runs are where it has them.
-        let is_replaced = with.set.members.len() == from.set.members.len() && with.set.titles() != from.set.titles();
-        if is_replaced {
+        // Where a law takes its equal's place, or adds little, the runs are where it has them.
+        if with.set.titles() != from.set.titles() {
             let made = self.linearise(&mut now, &[], true);
             if made.is_ok_and(|made| self.score_of(&made, &now) < from.score + THERE * from.count as f64) {
                 return Ok(now);
@@ -44,6 +44,20 @@ impl Problem<'_> {
         now = Fitted { links: Vec::new(), ..with };
         self.follow(&mut now)?;
         Ok(now)
+    }
+
+    /// Of two sets that may take another one's place the one that is likelier at the states of that; the first where derivatives are not known.
+    pub(crate) fn likelier_to_begin(&self, from: &Fitted, [first, other]: [EffectSet; 2]) -> EffectSet {
+        let score = |set: &EffectSet| {
+            let mut now = self.with(from, self.possible(from, set.clone()).ok()?).ok()?;
+            let made = (!now.links.is_empty()).then(|| self.linearise(&mut now, &[], true))?;
+            made.ok().map(|made| self.score_of(&made, &now)).filter(|score| score.is_finite())
+        };
+        match [&first, &other].map(score) {
+            [Some(own), Some(others)] if others < own => other,
+            [None, Some(_)] => other,
+            _ => first,
+        }
     }
 
     /// −2 log likelihood of a fit as it stands.

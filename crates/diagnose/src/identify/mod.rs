@@ -7,6 +7,7 @@
 mod answer;
 pub mod chain;
 pub mod coarse;
+mod damped;
 pub mod fit;
 mod follow;
 pub mod forces;

@@ -77,8 +77,11 @@ pub(super) fn fit_sets(
             continue;
         }
         let fit = fit_first(problem, now, &set, pool, (many, here));
-        let fit = fit.inspect_err(|error| watch.step(&format!("  {}: {error}", added.join("; ")))).ok().flatten();
-        let Some((same, fit)) = fit else {
+        if let Err(error) = &fit {
+            watch.step(&format!("  {}: {error}", added.join("; ")));
+            known.is_lost(&set);
+        }
+        let Ok(Some((same, fit))) = fit else {
             known.refuted.push(added);
             continue;
         };
@@ -114,7 +117,7 @@ pub(super) fn fit_sets(
 fn fit_first(
     problem: &Problem<'_>,
     now: &Fitted,
-    Proposal { members, spread, score, is_again }: &Proposal,
+    Proposal { members, beside, spread, score, is_again }: &Proposal,
     pool: &Pool,
     (many, here): (usize, f64),
 ) -> Result<Option<(Option<Fitted>, Fitted)>, DiagnoseError> {
@@ -127,7 +130,13 @@ fn fit_first(
         let mut near = near.filter(|(same, fit)| fit.score < same.as_ref().unwrap_or(now).score);
         return Ok(near.next());
     }
-    let first = look(set.clone())?;
+    let slots = now.set.slots();
+    let along = (beside.len() == slots.len() && !slots.is_empty()).then(|| {
+        let moved = now.set.moved(&slots, beside);
+        members.iter().fold(moved, |all, (m, x)| all.with(pool.of(*m), x))
+    });
+    let begins = along.map_or(set.clone(), |along| problem.likelier_to_begin(&begun, [along, set.clone()]));
+    let first = look(begins).or_else(|_| look(set.clone()))?;
     let gain = |(same, fit): &(Option<Fitted>, Fitted)| same.as_ref().unwrap_or(now).score - fit.score;
     let is_better = criterion(&first.1, many) < criterion(first.0.as_ref().unwrap_or(now), many);
     if is_better && gain(&first) >= PROMISING * (now.score - score) {
@@ -155,6 +164,13 @@ struct Known {
 }
 
 impl Known {
+    /// Takes note of a set that cannot be followed where it was promised.
+    fn is_lost(&mut self, set: &Proposal) {
+        if !set.is_again {
+            self.astray.push(Proposal { is_again: true, ..set.clone() });
+        }
+    }
+
     /// Takes note of what a set brought.
     fn judge(&mut self, set: Proposal, added: &[String], [promised, brought]: [f64; 2]) {
         if set.is_again && brought >= REFUTED * promised {
@@ -252,9 +268,12 @@ const UNHEARD: f64 = 1e-4;
 const BEARS: [f64; 2] = [0.1, 0.5];
 
 /// A set that is worth a fit.
+#[derive(Clone)]
 struct Proposal {
     /// Entries of the pool, and coordinates to begin with.
     members: Vec<(usize, Vec<f64>)>,
+    /// How far the numbers that are fitted already go with them; empty where that is not known.
+    beside: Vec<f64>,
     /// −2 log likelihood that is promised.
     score: f64,
     /// Spread to begin with.
@@ -282,6 +301,7 @@ fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Prop
     });
     let by_force = by_force.map(|s| Proposal {
         members: s.members.clone(),
+        beside: Vec::new(),
         score: now.score + s.change,
         spread: now.spread.clone(),
         is_again: false,
@@ -294,6 +314,7 @@ fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Prop
     let single = sets.iter().find(|s| s.members.len() == 1);
     let by_chain = worth.chain(single).map(|s| Proposal {
         members: s.members.clone(),
+        beside: s.beside.clone(),
         score: s.score,
         spread: s.spread.clone(),
         is_again: false,
@@ -314,7 +335,8 @@ fn proposals(looked: &Looked, now: &Fitted, refuted: &[Vec<String>]) -> Vec<Prop
 fn scored(pool: &Pool, now: &Fitted, s: &Score, spread: &Spread) -> Option<Proposal> {
     let entry = pool.entries.iter().position(|e| e.hypothesis == s.hypothesis && e.point == s.point)?;
     let members = vec![(entry, s.start.clone())];
-    Some(Proposal { members, score: now.score - s.score, spread: spread.clone(), is_again: false })
+    let beside = s.beside.clone();
+    Some(Proposal { members, beside, score: now.score - s.score, spread: spread.clone(), is_again: false })
 }
 
 /// Laws alone that promise anything, the most promising first, a form of each.

@@ -14,6 +14,8 @@ use rayon::prelude::*;
 pub struct LinearSet {
     /// Entries of the pool, and coordinates to begin a fit with.
     pub members: Vec<(usize, Vec<f64>)>,
+    /// How far the numbers that are fitted already go with them.
+    pub beside: Vec<f64>,
     /// Criterion: −2 log likelihood and the price of its members.
     pub criterion: f64,
     /// −2 log likelihood.
@@ -72,7 +74,14 @@ impl Ground<'_> {
     /// Sets of up to `most` effects; `none`: the model without any.
     pub fn grow(&self, none: &Estimate, most: usize) -> Grown {
         let (score, left) = (none.score, none.score - self.silent(&[], &none.spread));
-        let empty = LinearSet { members: Vec::new(), criterion: score, score, left, spread: none.spread.clone() };
+        let empty = LinearSet {
+            members: Vec::new(),
+            beside: Vec::new(),
+            criterion: score,
+            score,
+            left,
+            spread: none.spread.clone(),
+        };
         let (mut beam, mut all) = (vec![empty], Vec::<LinearSet>::new());
         let mut best = none.score;
         let mut scores = Vec::new();
@@ -180,6 +189,7 @@ impl Ground<'_> {
             score: before - found.score - of_scale,
             rank: columns.len(),
             start,
+            beside: found.theta.as_slice()[..self.active].to_vec(),
             shown: find_shown(of, &of.screens[*point], (&information, &inverse)),
         };
         Some(Promise { entry, criterion: self.price(&members) + found.score + of_scale, score })
@@ -237,7 +247,8 @@ impl Ground<'_> {
         let score = found.score + self.scale_of(members, &found);
         let members = self.possible(members, &found)?;
         let criterion = score + self.price(&members.iter().map(|m| m.0).collect::<Vec<_>>());
-        criterion.is_finite().then_some(LinearSet { members, criterion, left, score, spread: found.spread })
+        let beside = found.theta.as_slice()[..self.active].to_vec();
+        criterion.is_finite().then_some(LinearSet { members, beside, criterion, left, score, spread: found.spread })
     }
 
     /// What the change of inertia costs that some members make at their amplitudes.
