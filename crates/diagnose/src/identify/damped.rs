@@ -12,14 +12,14 @@ use nalgebra::DMatrix;
 
 /// Most times that a step is made shorter.
 pub(super) const SHORTER: usize = 4;
-/// Damping λ of several numbers, and share of the step, each time.
-const OF_SEVERAL: [(f64, f64); SHORTER] = [(0.0, 0.5), (1e-5, 1.0), (1e-3, 0.5), (1e-1, 0.125)];
+/// Damping λ of a set with numbers that have a tolerance, and share of the step, each time.
+const OF_MANY: [(f64, f64); SHORTER] = [(0.0, 0.5), (1e-5, 1.0), (1e-3, 0.5), (1e-1, 0.125)];
 /// Part of a damping that was needed with which the next step begins.
 const EASED: f64 = 0.1;
 /// Damping below which a step is a whole one.
 const LEAST: f64 = 1e-6;
-/// Share of the step of one number, which no damping turns.
-const OF_ONE: [f64; SHORTER] = [0.5, 0.125, 1.0 / 64.0, 1.0 / 1024.0];
+/// Share of the step of a set without such numbers.
+const OF_FEW: [f64; SHORTER] = [0.5, 0.125, 1.0 / 64.0, 1.0 / 1024.0];
 
 /// Where a fit was made linear: what its steps are taken by.
 pub(super) struct Look<'a> {
@@ -78,10 +78,9 @@ impl<'a> Way<'a> {
     pub(super) fn shorter(&mut self, problem: &Problem<'_>) -> Option<Fitted> {
         let (from, look, whole) = self.last.as_ref()?;
         self.shorter += 1;
-        let (damping, share) = match look.slots.len() {
-            0 | 1 => (0.0, OF_ONE[self.shorter - 1]),
-            _ => OF_SEVERAL[self.shorter - 1],
-        };
+        // A law's own shape bends otherwise: there a shorter step in the same direction is the better one.
+        let has_valley = from.set.members.iter().any(|(h, _)| h.is_tolerated());
+        let (damping, share) = if has_valley { OF_MANY[self.shorter - 1] } else { (0.0, OF_FEW[self.shorter - 1]) };
         self.damping = damping.max(self.damping / EASED);
         let found = if self.damping > 0.0 { look.damped(self.damping) } else { whole.clone() };
         let to = problem.stepped(from, look, found).ok()?;

@@ -27,8 +27,9 @@ impl Problem<'_> {
             self.follow(&mut now)?;
             return Ok(now);
         }
-        // Where a law takes its equal's place, or adds little, the runs are where it has them.
-        if with.set.titles() != from.set.titles() {
+        // One law in the place of its equal: the runs are where it has them.
+        let is_replaced = with.set.members.len() == from.set.members.len();
+        if is_replaced && with.set.titles() != from.set.titles() {
             let made = self.linearise(&mut now, &[], true);
             if made.is_ok_and(|made| self.score_of(&made, &now) < from.score + THERE * from.count as f64) {
                 return Ok(now);

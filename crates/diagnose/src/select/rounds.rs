@@ -14,7 +14,7 @@ use crate::error::DiagnoseError;
 use crate::identify::fit::{Fitted, Problem};
 use crate::identify::marginal::Spread;
 use crate::screen::Score;
-use crate::work::Until;
+use crate::work::{Until, Watch};
 
 /// Sets of one size of the chain that are fitted in full simulation in a round, and how many of all where promises are broken.
 const FITTED: usize = 2;
@@ -76,14 +76,12 @@ pub(super) fn fit_sets(
         if enough.iter().any(|known| known.outdoes(&added, costs)) || is_own && promised < costs || promised < least {
             continue;
         }
-        let fit = fit_first(problem, now, &set, pool, (many, here));
-        if let Err(error) = &fit {
-            watch.step(&format!("  {}: {error}", added.join("; ")));
-            known.is_lost(&set);
-        }
-        let Ok(Some((same, fit))) = fit else {
-            known.refuted.push(added);
-            continue;
+        let (same, fit) = match fit_first(problem, now, &set, pool, (many, here)) {
+            Ok(Some(found)) => found,
+            refuted => {
+                known.refute((set, added), refuted.err(), watch);
+                continue;
+            }
         };
         if let Some(same) = same {
             finer = same;
@@ -164,11 +162,15 @@ struct Known {
 }
 
 impl Known {
-    /// Takes note of a set that cannot be followed where it was promised.
-    fn is_lost(&mut self, set: &Proposal) {
-        if !set.is_again {
-            self.astray.push(Proposal { is_again: true, ..set.clone() });
+    /// Takes note of a set that is no better from near what changes nothing either, or cannot be followed where it was promised, which is said.
+    fn refute(&mut self, (set, added): (Proposal, Vec<String>), error: Option<DiagnoseError>, watch: &dyn Watch) {
+        if let Some(error) = error {
+            watch.step(&format!("  {}: {error}", added.join("; ")));
+            if !set.is_again {
+                self.astray.push(Proposal { is_again: true, ..set });
+            }
         }
+        self.refuted.push(added);
     }
 
     /// Takes note of what a set brought.

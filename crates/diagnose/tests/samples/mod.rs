@@ -68,7 +68,15 @@ impl Sample<'_> {
             verdict: self.verdict,
             located,
             effects,
-            error: Errors { channels: Vec::new(), fit, holdout: Some(free), window_s: self.window_s, windowed, runs },
+            error: Errors {
+                fit,
+                holdout: Some(free),
+                window_s: self.window_s,
+                windowed,
+                within_tolerance: None,
+                runs,
+                channels: Vec::new(),
+            },
             remarks: Vec::new(),
         }
     }
