@@ -54,6 +54,7 @@ fn a_number_within_its_tolerance_is_no_finding() {
     let (diagnosis, patched) = diagnosed(&[heavier(0.02)], MASS);
     assert_eq!(diagnosis.verdict, Verdict::NoMismatch, "{:?}", diagnosis.effects);
     assert_eq!(titles(&diagnosis.within_tolerance), ["body-mass at body:bar"]);
+    assert_eq!(diagnosis.error.within_tolerance, None, "there is no effect beside it");
     let mass = diagnosis.within_tolerance[0].params["mass"].number().unwrap();
     assert!((mass / 4.08 - 1.0).abs() < 2e-3, "{mass}");
     assert!(patched.contains("corrected within their tolerances"), "{patched}");
@@ -74,6 +75,9 @@ fn what_is_left_out_is_found_beside_numbers_that_are_off() {
     let c = diagnosis.effects[0].params["c"].number().unwrap();
     assert!((c / 0.1 - 1.0).abs() < 0.04, "{c}");
     assert!(titles(&diagnosis.within_tolerance).contains(&"actuator-gain at joint:hinge".to_owned()));
+    // What the friction explains is a share of what the numbers leave that are off.
+    let (left, error) = (diagnosis.error.within_tolerance.unwrap(), diagnosis.error.windowed);
+    assert!(error.after < 1.1 && 2.0 < left && left < error.before, "{left} of {error:?}");
 }
 
 #[test]
