@@ -1,7 +1,7 @@
 //! Steps of a fit: whole ones, and shorter ones where a whole one leads to what is less likely.
 //!
 //! Numbers that the data hardly tell apart lie in a narrow valley that bends: a whole Gauss–Newton step goes far along it and ends on its slope, and the half
-//! of it is no nearer to its bottom. Damped by λ diag(K), K the numbers' information with states and forces eliminated, a step keeps what is well known and
+//! of it may be no nearer to its bottom: masses and centres within their tolerances lie so. Damped by λ diag(K), K the numbers' information with states and forces eliminated, a step keeps what is well known and
 //! goes little along the valley (Levenberg 1944; Marquardt 1963); what is still not likelier is shortened as a whole, states and all.
 
 use super::fit::{CONVERGED, Fitted, Problem};
