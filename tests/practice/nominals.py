@@ -38,13 +38,9 @@ def drawn(count, draw, rigs):
 def planted_set(softdock, recordings, folder, rig, effects, seed):
     """The scenario with wrong numbers and the set, made if they are not there."""
     if not (folder / "wrong" / "scenario.toml").exists():
-        folder.mkdir(parents=True, exist_ok=True)
-        entries = [", ".join(f"{key} = {planted.toml(value)}" for key, value in effect.items()) for effect in effects]
-        scenario = planted.SCENARIOS / f"{rig}.toml"
-        command = [softdock, "plant", scenario, "--like", recordings / planted.LIKE[rig], "--seed", str(seed), "--out", folder / "set"]
-        if planted.run(command + [a for e in entries for a in ("--effect", e)], folder / "plant.log") != 0:
+        if not planted.plant(softdock, recordings, rig, effects, seed, folder):
             return None
-        disturb(scenario, folder / "set", folder / "wrong", "wrong", str(seed))
+        disturb(planted.SCENARIOS / f"{rig}.toml", folder / "set", folder / "wrong", "wrong", str(seed))
     return folder / "wrong"
 
 

@@ -135,16 +135,22 @@ def toml(value):
     return json.dumps(value) if isinstance(value, str) else str(value)
 
 
+def plant(softdock, recordings, rig, planted, seed, folder):
+    """Makes FOLDER/set, where it is not there; whether it is there then."""
+    folder.mkdir(parents=True, exist_ok=True)
+    entries = [", ".join(f"{key} = {toml(value)}" for key, value in effect.items()) for effect in planted]
+    effects = [argument for entry in entries for argument in ("--effect", entry)]
+    like = ["--like", recordings / LIKE[rig], "--seed", str(seed)]
+    command = [softdock, "plant", SCENARIOS / f"{rig}.toml", *like, *effects, "--out", folder / "set"]
+    return (folder / "set").exists() or run(command, folder / "plant.log") == 0
+
+
 def diagnosed(softdock, recordings, out, case, seed, size):
     rig = case.split("/")[1] if case.startswith("nothing/") else case.split("/")[0]
     scenario, folder = SCENARIOS / f"{rig}.toml", out / case / f"{seed}-{size:g}"
-    folder.mkdir(parents=True, exist_ok=True)
     planted = planted_in(case, size)
-    entries = [", ".join(f"{key} = {toml(value)}" for key, value in effect.items()) for effect in planted]
-    effects = [argument for entry in entries for argument in ("--effect", entry)]
-    plant = [softdock, "plant", scenario, "--like", recordings / LIKE[rig], "--seed", str(seed), *effects, "--out", folder / "set"]
     what = f"{case}, seed {seed}" + (f", times {size:g}" if size != 1.0 else "")
-    if not (folder / "set").exists() and run(plant, folder / "plant.log") != 0:
+    if not plant(softdock, recordings, rig, planted, seed, folder):
         return f"| {what} | not planted: see {folder / 'plant.log'} | | | | |", False, []
     began = time.time()
     if not (folder / "out" / "diagnosis.json").exists():

@@ -61,14 +61,18 @@ impl EffectSet {
 
     /// The members within tolerances alone.
     pub fn tolerated(&self) -> Self {
-        let found = (0..self.members.len()).rev().filter(|m| !self.members[*m].0.is_tolerated());
-        found.fold(self.clone(), |set, m| set.without(m))
+        self.only(Hypothesis::is_tolerated)
     }
 
     /// The findings alone.
     pub fn without_tolerated(&self) -> Self {
-        let numbers = (0..self.members.len()).rev().filter(|m| self.members[*m].0.is_tolerated());
-        numbers.fold(self.clone(), |set, m| set.without(m))
+        self.only(|h| !h.is_tolerated())
+    }
+
+    /// Its members of a kind.
+    fn only(&self, wanted: impl Fn(&Hypothesis) -> bool) -> Self {
+        let others = (0..self.members.len()).rev().filter(|m| !wanted(&self.members[*m].0));
+        others.fold(self.clone(), |set, m| set.without(m))
     }
 
     /// Mean and inverse variance of a fitted coordinate's prior, where it has one: its tolerance, or how far an effect's number may be expected.

@@ -80,35 +80,49 @@ pub fn judge(
         residuals: fit.segments.par_iter().map(|s| all.residuals(&fit.built, s)).collect(),
         fit,
     };
-    let of = |[known, runs]: [&Fit; 2], name: &'static str| -> Result<[Prediction; 2], DiagnoseError> {
-        let is_last = known.set.members.len() == set.members.len();
+    let of = |[known, runs]: [&Fit; 2], who: Who| -> Result<[Prediction; 2], DiagnoseError> {
+        let is_last = who == Who::Corrected || set.members.is_empty();
         let stage = Stage { pace: if is_last { all.pace } else { few.pace }, ..*few };
         let set = known.set.frozen();
         let built = plant.build(&set.effects())?;
         let runs = if is_last { found[1] } else { runs };
-        let is_corrected = is_last || name == TOLERATED;
-        let model = Candidate { stage, plant, set, built, name, is_corrected, known, runs };
+        let is_corrected = is_last || who == Who::Tolerated;
+        let model = Candidate { stage, plant, set, built, who, is_corrected, known, runs };
         let starts = if follows { model.starts_along_runs(window)? } else { model.starts_in_windows(window)? };
         Ok(starts.map(predict))
     };
-    let [windows_before, runs_before] = of(nominal, NOMINAL)?;
+    let [windows_before, runs_before] = of(nominal, Who::Nominal)?;
     let [windows_after, runs_after] = match set.members.is_empty() {
         true => [windows_before.clone(), runs_before.clone()],
-        false => of(found, CORRECTED)?,
+        false => of(found, Who::Corrected)?,
     };
     let has_effects = set.has_findings();
     let tolerated = tolerated.filter(|fits| has_effects && !fits[0].set.members.is_empty());
     Ok(Judgement {
         windowed: [windows_before, windows_after],
         whole: [runs_before, runs_after],
-        tolerated: tolerated.map(|fits| of(fits, TOLERATED)).transpose()?,
+        tolerated: tolerated.map(|fits| of(fits, Who::Tolerated)).transpose()?,
     })
 }
 
-/// Who is judged, for who watches.
-const NOMINAL: &str = "nominal model";
-const TOLERATED: &str = "nominal model, its numbers within their tolerances";
-const CORRECTED: &str = "corrected model";
+/// Which model is judged.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Who {
+    Nominal,
+    Tolerated,
+    Corrected,
+}
+
+impl Who {
+    /// For who watches.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Nominal => "nominal model",
+            Self::Tolerated => "nominal model, its numbers within their tolerances",
+            Self::Corrected => "corrected model",
+        }
+    }
+}
 
 /// Runs with their sensors as late as they are in a model; as they were where none is.
 fn as_late_as<'t>(built: &Built, tapes: &'t [Tape]) -> Cow<'t, [Tape]> {
@@ -125,7 +139,7 @@ struct Candidate<'a> {
     /// Its effects, no number free.
     set: EffectSet,
     built: Built,
-    name: &'static str,
+    who: Who,
     /// Whether it is corrected: by effects, or within tolerances.
     is_corrected: bool,
     /// The fit whose windows are known, and that whose whole runs are.
@@ -135,7 +149,7 @@ struct Candidate<'a> {
 
 impl Candidate<'_> {
     fn say(&self, what: &str, fit: &Fit) {
-        self.stage.work.watch.step(&format!("{}, {what}: error {:.3}", self.name, fit.rms()));
+        self.stage.work.watch.step(&format!("{}, {what}: error {:.3}", self.who.words(), fit.rms()));
     }
 
     /// What a wrong model is off by takes no more exact starts.

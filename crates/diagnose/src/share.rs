@@ -95,11 +95,10 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
     let judging = judging(tapes);
     let left_out = judging == Role::Holdout;
     let is_judged = |run: usize| tapes[run].role == judging;
-    let whole =
-        tapes.iter().any(|t| t.role == judging).then(|| judgement.beside_effects(false).map(|p| p.rms(is_judged)));
+    let [runs_before, runs_after] = judgement.beside_effects(false).map(|p| p.rms(is_judged));
     let [runs, along] = [true, false].map(|windowed| windows_of(judgement.beside_effects(windowed), is_judged));
     let shows = |runs: &BTreeMap<usize, Vec<Window>>| runs.values().flatten().any(|w| w.tells(found.doubt));
-    let is_slow = !shows(&runs) && whole.is_some_and(|[before, _]| before < NEAR) && shows(&along);
+    let is_slow = !shows(&runs) && runs_before < NEAR && shows(&along);
     let lengths = along.keys().map(|run| tapes[*run].span.1 - tapes[*run].span.0);
     let (window_s, runs) = if is_slow { (lengths.fold(0.0, f64::max), along) } else { (window_s, runs) };
     let all = sum(runs.values().flatten());
@@ -111,11 +110,12 @@ pub(crate) fn explained(judgement: &Judgement, tapes: &[Tape], found: &Fit, wind
     let is_gain = || all.share() > 0.0 && self::interval(runs, mean_log_gain)[0] > 0.0;
     let leaves_little = all.after <= LEFT * LEFT * all.count || all.share() > 1.0 - NEXT_TO_NOTHING;
     // Where whole runs were followed before, they have to be followed as well.
-    let leads_astray = whole.is_some_and(|[before, after]| before < NEAR && after > LEFT && after > HARM * before);
+    let leads_astray = runs_before < NEAR && runs_after > LEFT && runs_after > HARM * runs_before;
     let helps = (interval[0] > 0.0 || is_gain()) && harmed.is_empty() && !leads_astray;
-    let is_still = |[_, after]: [f64; 2]| after <= QUIET;
+    let is_still = |after: f64| after <= QUIET;
     let in_windows = [Role::Fit, judging].map(|role| judgement.rms_of(tapes, true, role));
-    let is_quiet = left_out && whole.is_some_and(is_still) && in_windows.into_iter().flatten().all(is_still);
+    let is_quiet =
+        left_out && is_still(runs_after) && in_windows.into_iter().flatten().all(|[_, after]| is_still(after));
     let is_whole = leaves_little && harmed.is_empty() && !leads_astray && !drifts(judgement, tapes);
     (
         Explained { share: all.share(), interval, window_s, runs: count, left_out, harmed },

@@ -136,8 +136,10 @@ fn explanation(diagnosis: &Diagnosis) -> Option<String> {
     let within = within_words(diagnosis);
     match (diagnosis.verdict, effects.is_empty()) {
         (Verdict::NoMismatch, _) => None,
-        (Verdict::Explained, false) if within.is_empty() => Some(format!("It is explained by {list}.")),
-        (Verdict::Explained, false) => Some(format!("{within}that is explained by {list}.")),
+        (Verdict::Explained, false) => {
+            let it = if within.is_empty() { "It" } else { "that" };
+            Some(format!("{within}{it} is explained by {list}."))
+        }
         (Verdict::PartlyExplained, false) => {
             let part = diagnosis.explained_share.as_ref().map_or_else(|| "A part".to_owned(), share_words);
             let of = if within.is_empty() { "it" } else { "that" };

@@ -47,17 +47,16 @@ impl Problem<'_> {
         Ok(now)
     }
 
-    /// Of two sets that may take another one's place the one that is likelier at the states of that; the first where derivatives are not known.
-    pub(crate) fn likelier_to_begin(&self, from: &Fitted, [first, other]: [EffectSet; 2]) -> EffectSet {
+    /// Whether the first of two sets that may take another one's place is as likely as the other at the states of that; it is where derivatives are not known.
+    pub(crate) fn is_likelier_to_begin(&self, from: &Fitted, sets: [&EffectSet; 2]) -> bool {
         let score = |set: &EffectSet| {
             let mut now = self.with(from, self.possible(from, set.clone()).ok()?).ok()?;
             let made = (!now.links.is_empty()).then(|| self.linearise(&mut now, &[], true))?;
             made.ok().map(|made| self.score_of(&made, &now)).filter(|score| score.is_finite())
         };
-        match [&first, &other].map(score) {
-            [Some(own), Some(others)] if others < own => other,
-            [None, Some(_)] => other,
-            _ => first,
+        match sets.map(score) {
+            [Some(own), Some(other)] => own <= other,
+            [own, other] => own.is_some() || other.is_none(),
         }
     }
 

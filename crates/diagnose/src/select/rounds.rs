@@ -133,8 +133,11 @@ fn fit_first(
         let moved = now.set.moved(&slots, beside);
         members.iter().fold(moved, |all, (m, x)| all.with(pool.of(*m), x))
     });
-    let begins = along.map_or(set.clone(), |along| problem.likelier_to_begin(&begun, [along, set.clone()]));
-    let first = look(begins).or_else(|_| look(set.clone()))?;
+    let along = along.filter(|along| problem.is_likelier_to_begin(&begun, [along, &set]));
+    let first = match along.map(look) {
+        Some(Ok(first)) => first,
+        None | Some(Err(_)) => look(set.clone())?,
+    };
     let gain = |(same, fit): &(Option<Fitted>, Fitted)| same.as_ref().unwrap_or(now).score - fit.score;
     let is_better = criterion(&first.1, many) < criterion(first.0.as_ref().unwrap_or(now), many);
     if is_better && gain(&first) >= PROMISING * (now.score - score) {
