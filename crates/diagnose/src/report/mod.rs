@@ -113,7 +113,9 @@ fn tiles(diagnosis: &Diagnosis, evidence: &Evidence) -> Vec<(&'static str, Strin
     if let Some(explained) = &diagnosis.explained_share {
         let [low, high] = explained.interval.map(share_percent);
         let whose = if explained.left_out { "not used" } else { "used" };
-        let below = format!("of the mismatch on runs {whose}, 95 % interval {low} to {high} %");
+        let of =
+            if diagnosis.error.within_tolerance.is_some() { "what corrected numbers leave" } else { "the mismatch" };
+        let below = format!("of {of} on runs {whose}, 95 % interval {low} to {high} %");
         tiles.push(("explained", format!("{} %", share_percent(explained.share)), below));
     }
     let (error, judged) = (&diagnosis.error, diagnosis.judged());
